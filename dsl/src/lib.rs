@@ -1,1 +1,7 @@
-//! ansatz-dsl
+//! The Ansatz compiler: from model text to checked models and native code.
+
+pub mod diagnostic;
+pub mod source;
+pub mod syntax;
+pub mod scalar;
+pub mod derive;

@@ -29,6 +29,11 @@ impl Element {
     /// Every element.
     pub const ALL: &[&Element] = &[&p1::SEGMENT, &p1::TRIANGLE, &p2::SEGMENT, &p2::TRIANGLE];
 
+    /// Linear triangle.
+    pub const P1_TRIANGLE: &'static Element = &p1::TRIANGLE;
+    /// Quadratic triangle.
+    pub const P2_TRIANGLE: &'static Element = &p2::TRIANGLE;
+
     /// The element of this name on this cell.
     pub fn find(name: &str, cell: Cell) -> Option<&'static Element> {
         Element::ALL.iter().copied().find(|e| e.name == name && e.cell == cell)

@@ -31,6 +31,8 @@ impl Element {
 
     /// Linear triangle.
     pub const P1_TRIANGLE: &'static Element = &p1::TRIANGLE;
+    /// Quadratic segment.
+    pub const P2_SEGMENT: &'static Element = &p2::SEGMENT;
     /// Quadratic triangle.
     pub const P2_TRIANGLE: &'static Element = &p2::TRIANGLE;
 

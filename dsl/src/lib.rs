@@ -5,3 +5,5 @@ pub mod source;
 pub mod syntax;
 pub mod scalar;
 pub mod derive;
+pub mod library;
+pub mod model;

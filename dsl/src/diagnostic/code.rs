@@ -59,6 +59,8 @@ codes! {
     UnknownFile = "N010", "the file cannot be read";
     PrivateName = "N011", "the name is private to its block";
     NothingToReplace = "N012", "`replace` and `drop` need something of that name in the base";
+    NotConstant = "N013", "the value must be known before the run";
+    NeedsRun = "N014", "the value belongs to a run or to one time of it";
 
     DimensionMismatch = "U101", "both sides need the same dimension";
     NotANumber = "U102", "the function takes a pure number";
@@ -72,6 +74,9 @@ codes! {
     DeclaredShape = "S102", "the value has another shape than declared";
     ScalarNeeded = "S103", "a scalar is needed here";
     NotOnDomain = "S104", "the value does not exist on this domain";
+    VariesInSpace = "S105", "the value varies in space where one number is needed";
+    MixedDomain = "S106", "cells, edges and contact pairs make no common domain";
+    IncompleteMatch = "S107", "the arms of a `match` leave a gap, repeat or do not ascend";
 
     TooFewEquations = "E201", "fewer equations than unknowns";
     TooManyEquations = "E202", "more equations than unknowns";
@@ -79,11 +84,13 @@ codes! {
     HighIndex = "E204", "the system has an index that the integrators do not solve";
     NoConsistentStart = "E205", "no consistent start exists or can be found";
     Unbalanced = "E206", "an unknown has no equation and occurs in no energy";
+    NotLinear = "E207", "a residual is linear in its test functions";
 
     OpenLoop = "G301", "the paths of a region do not close";
     Overlap = "G302", "regions or paths overlap";
     EmptyPatch = "G303", "a path or region has no extent";
     BadRange = "G304", "the parameter range changes the topology";
+    BadPair = "G305", "a contact pair joins two separate surfaces";
 
     Failed = "T401", "an expectation does not hold";
     Discontinuous = "T402", "the pieces of a `match` do not meet";

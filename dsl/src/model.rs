@@ -1,0 +1,768 @@
+//! Stage 3 of 6: the checked model. Input: syntax trees. Output: a `Model` in which every name is an id, every expression has a type
+//! (shape and dimension), every number stands in the model's coherent units, and no user error is left except those that need numbers
+//! (geometry) or equations counted (states). Knows no mesh and no Rust.
+//!
+//! Vectors and tensors always have 3 and 3x3 components, in the order of [`Frame::axes`]: (r, theta, z) in axisymmetric models, (x, y, z) in
+//! plane ones. A field or point stores only its in-plane components.
+
+use crate::source::Span;
+use ansatz_units::{Dimension, UnitSystem};
+
+macro_rules! ids {
+    ($($(#[$doc:meta])* $name:ident),* $(,)?) => { $(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub struct $name(pub usize);
+    )* };
+}
+ids! {
+    /// Index into [`Model::params`].
+    ParamId,
+    /// Index into [`Model::lets`].
+    LetId,
+    /// Index into [`Model::functions`].
+    FunctionId,
+    /// Index into [`Model::fields`].
+    FieldId,
+    /// Index into [`Model::states`].
+    StateId,
+    /// Index into [`Geometry::paths`].
+    PathId,
+    /// Index into [`Geometry::regions`].
+    RegionId,
+    /// Index into [`Model::pairs`].
+    PairId,
+    /// Index into [`Model::blocks`].
+    BlockId,
+    /// Index into [`Model::events`].
+    EventId,
+    /// A function argument, a `let` of a block, a test's loop variable: unique within the model.
+    LocalId,
+}
+
+/// How coordinates, hoop terms and measures are to be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Frame {
+    /// `axisymmetric(r, z)`: components (r, theta, z); measures carry 2 pi r; vector fields have no r component on `axis`.
+    Axisymmetric,
+    /// `plane_strain(x, y)`: components (x, y, z); all per unit depth.
+    PlaneStrain,
+}
+
+/// Coordinates of the model.
+#[derive(Clone, Debug)]
+pub struct Coordinates {
+    /// The frame.
+    pub frame: Frame,
+    /// Names of the two in-plane coordinates, such as `r` and `z`.
+    pub names: [String; 2],
+}
+
+impl Frame {
+    /// Tensor index of in-plane direction 0 and 1.
+    #[must_use]
+    pub fn axes(self) -> [usize; 2] {
+        match self {
+            Self::Axisymmetric => [0, 2],
+            Self::PlaneStrain => [0, 1],
+        }
+    }
+}
+
+/// Number of components of a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// 1 component.
+    Scalar,
+    /// 3 components.
+    Vector,
+    /// 3x3 components, row by row.
+    Tensor,
+}
+
+/// Type of an expression.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Type {
+    /// A number, vector or tensor with a dimension.
+    Value(Shape, Dimension),
+    /// A literal 0 before it met its neighbour: fits every shape and dimension. No expression of a finished model has it.
+    Zero,
+    /// Truth value of a condition.
+    Condition,
+    /// A function passed as an argument.
+    Law(Vec<Type>, Box<Type>),
+    /// Named values, in declaration order.
+    Record(Vec<(String, Type)>),
+}
+
+/// An expression with its type.
+#[derive(Clone, Debug)]
+pub struct Expr {
+    /// What it is.
+    pub kind: ExprKind,
+    /// Its type.
+    pub ty: Type,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// Arithmetic operators.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arithmetic {
+    /// Sum of equal shapes.
+    Add,
+    /// Difference of equal shapes.
+    Sub,
+    /// Scalar times anything; tensor times tensor or vector (contraction of neighbouring indices).
+    Mul,
+    /// Anything over a scalar.
+    Div,
+    /// Scalar power; the exponent is a number.
+    Pow,
+}
+
+/// Comparisons of scalars.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Relation {
+    /// `<`
+    Less,
+    /// `<=`
+    LessEqual,
+    /// `>`
+    Greater,
+    /// `>=`
+    GreaterEqual,
+    /// `==`
+    Equal,
+}
+
+/// Reductions over a domain or over the run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Reduction {
+    /// Smallest value.
+    Min,
+    /// Largest value.
+    Max,
+    /// Integral over the measure, divided by the measure.
+    Mean,
+    /// Integral.
+    Integral,
+}
+
+/// Functions the language knows by itself; everything else is written in the library.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Builtin {
+    /// Scalar functions of one argument, by their textbook name.
+    Scalar(ScalarFunction),
+    /// `min(a, b, ..)` of scalars.
+    Min,
+    /// `max(a, b, ..)` of scalars.
+    Max,
+    /// `atan2(y, x)`.
+    Atan2,
+    /// `det(A)`.
+    Det,
+    /// `tr(A)`.
+    Trace,
+    /// `transpose(A)`.
+    Transpose,
+    /// `inverse(A)`.
+    Inverse,
+    /// `sym(A)`: symmetric part.
+    Sym,
+    /// `dev(A) = A - tr(A)/3 I`.
+    Dev,
+    /// `diag(a, b, c)`.
+    Diag,
+    /// `dot(a, b)` of vectors.
+    Dot,
+    /// `inner(A, B) = A_ij B_ij` of tensors.
+    Inner,
+    /// `outer(a, b) = a_i b_j`.
+    Outer,
+    /// `cross(a, b)`.
+    Cross,
+    /// Euclidean or Frobenius norm.
+    Norm,
+    /// `grad(e)` of a scalar (vector) or vector (tensor, `grad(v)_ij = d v_i / d x_j`), hoop terms included.
+    Grad,
+    /// `div(v) = tr(grad(v))`.
+    Div,
+    /// `polar(centre, radius, angle)`: a point.
+    Polar,
+}
+
+/// Scalar functions of one scalar argument.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum ScalarFunction {
+    Sqrt,
+    Exp,
+    Ln,
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Sinh,
+    Cosh,
+    Tanh,
+    Abs,
+}
+
+/// One arm `< a => x` or `<= a => x` of a `match` on a value.
+#[derive(Clone, Debug)]
+pub struct Arm {
+    /// Whether the bound itself belongs to this arm.
+    pub inclusive: bool,
+    /// Upper bound of this arm; bounds ascend.
+    pub bound: Expr,
+    /// Value below the bound.
+    pub value: Expr,
+}
+
+/// What a `match` promises at its breakpoints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Smoothness {
+    /// Continuous (the default).
+    C0,
+    /// Continuous with its first derivative.
+    C1,
+    /// Nothing.
+    Jumps,
+}
+
+/// Kinds of expressions.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub enum ExprKind {
+    /// A number in the model's coherent units; a literal 0 may have any shape and then means all components.
+    Number(f64),
+    Param(ParamId),
+    /// A `let` of the file, of the geometry, or of a block; its value is in [`Model::lets`].
+    Let(LetId),
+    /// Function argument, function-local let, or loop variable of a test.
+    Local(LocalId),
+    Field(FieldId),
+    /// `test(u)`: the test function of a field.
+    Test(FieldId),
+    State(StateId),
+    /// In-plane coordinate 0 or 1 of the reference position.
+    Coordinate(usize),
+    Time,
+    /// The identity tensor `I`.
+    Identity,
+    /// `(a, b)`: an in-plane vector.
+    Tuple(Box<[Expr; 2]>),
+    /// `(a, b, c)`: a vector with all three components (tensor index order).
+    Triple(Box<[Expr; 3]>),
+    Negate(Box<Expr>),
+    Arithmetic(Arithmetic, Box<Expr>, Box<Expr>),
+    Compare(Relation, Box<Expr>, Box<Expr>),
+    And(Box<Expr>, Box<Expr>),
+    Or(Box<Expr>, Box<Expr>),
+    Not(Box<Expr>),
+    /// `condition for duration`.
+    Held(Box<Expr>, Box<Expr>),
+    /// Component `i` of a vector (tensor index order).
+    Component(Box<Expr>, usize),
+    /// Component `(i, j)` of a tensor.
+    Component2(Box<Expr>, usize, usize),
+    /// Member of a record.
+    Member(Box<Expr>, usize),
+    Record(Vec<Expr>),
+    Builtin(Builtin, Vec<Expr>),
+    /// A user or library function applied to all its arguments.
+    Apply(FunctionId, Vec<Expr>),
+    /// A law argument applied: `W(F)`.
+    ApplyLocal(LocalId, Vec<Expr>),
+    /// `Psi(_, G)`: a law with some arguments fixed (`None` = hole, in order). A bare function name is one with holes only.
+    Law(FunctionId, Vec<Option<Expr>>),
+    /// `dt(e)`.
+    Rate(Box<Expr>),
+    /// `diff(e, x)`, x a local or a let: derivative of a scalar (shape of x) or of any shape by a scalar x.
+    Diff(Box<Expr>, Box<Expr>),
+    /// `frozen(e)`: held in the variation, followed in the tangent.
+    Frozen(Box<Expr>),
+    MatchValue { scrutinee: Box<Expr>, arms: Vec<Arm>, otherwise: Box<Expr>, smoothness: Smoothness },
+    /// `match region { core => a, .. }`.
+    MatchRegion(Vec<(RegionId, Expr)>, Option<Box<Expr>>),
+    /// `mean(e on D)` and the like.
+    Reduce(Reduction, Box<Expr>, Domain),
+    /// `max(e on run)`, `min(e on a .. b)`: over time; only in tests and sweeps. `None` = the whole run.
+    ReduceRun(Reduction, Box<Expr>, Option<(Box<Expr>, Box<Expr>)>),
+    /// `area(D)`, `volume(D)`, `length(D)`: the reference measure.
+    Measure(Domain),
+    /// `force(block, D)`: resultant that a block puts on a surface [force].
+    Force(BlockId, Domain),
+    /// `pair.gap`: signed distance, negative when penetrating.
+    Gap(PairId),
+    /// `e@(r, z)`: value at a reference point.
+    AtPoint(Box<Expr>, Box<Expr>),
+    /// `e@(50 s)`.
+    AtTime(Box<Expr>, Box<Expr>),
+    /// `e@event`; `t@event` is the event's time.
+    AtEvent(Box<Expr>, EventId),
+    /// `outcome == event`.
+    OutcomeIs(EventId),
+}
+
+impl Expr {
+    /// The direct parts, in the order of writing; domains have none.
+    #[must_use]
+    pub fn children(&self) -> Vec<&Expr> {
+        match &self.kind {
+            ExprKind::Number(_)
+            | ExprKind::Param(_)
+            | ExprKind::Let(_)
+            | ExprKind::Local(_)
+            | ExprKind::Field(_)
+            | ExprKind::Test(_)
+            | ExprKind::State(_)
+            | ExprKind::Coordinate(_)
+            | ExprKind::Time
+            | ExprKind::Identity
+            | ExprKind::Measure(_)
+            | ExprKind::Force(..)
+            | ExprKind::Gap(_)
+            | ExprKind::OutcomeIs(_) => Vec::new(),
+            ExprKind::Tuple(items) => items.iter().collect(),
+            ExprKind::Triple(items) => items.iter().collect(),
+            ExprKind::Negate(a)
+            | ExprKind::Not(a)
+            | ExprKind::Component(a, _)
+            | ExprKind::Component2(a, ..)
+            | ExprKind::Member(a, _)
+            | ExprKind::Rate(a)
+            | ExprKind::Frozen(a)
+            | ExprKind::Reduce(_, a, _)
+            | ExprKind::AtEvent(a, _) => vec![a],
+            ExprKind::Arithmetic(_, a, b)
+            | ExprKind::Compare(_, a, b)
+            | ExprKind::And(a, b)
+            | ExprKind::Or(a, b)
+            | ExprKind::Held(a, b)
+            | ExprKind::Diff(a, b)
+            | ExprKind::AtPoint(a, b)
+            | ExprKind::AtTime(a, b) => vec![a, b],
+            ExprKind::Record(items)
+            | ExprKind::Builtin(_, items)
+            | ExprKind::Apply(_, items)
+            | ExprKind::ApplyLocal(_, items) => items.iter().collect(),
+            ExprKind::Law(_, fixed) => fixed.iter().flatten().collect(),
+            ExprKind::MatchValue { scrutinee, arms, otherwise, .. } => std::iter::once(scrutinee.as_ref())
+                .chain(arms.iter().flat_map(|arm| [&arm.bound, &arm.value]))
+                .chain([otherwise.as_ref()])
+                .collect(),
+            ExprKind::MatchRegion(arms, otherwise) => {
+                arms.iter().map(|(_, value)| value).chain(otherwise.as_deref()).collect()
+            }
+            ExprKind::ReduceRun(_, a, times) => {
+                let times = times.iter().flat_map(|(from, to)| [from.as_ref(), to.as_ref()]);
+                std::iter::once(a.as_ref()).chain(times).collect()
+            }
+        }
+    }
+}
+
+/// One piece of a domain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Piece {
+    /// All cells of a region.
+    Region(RegionId),
+    /// A whole path.
+    Path(PathId),
+    /// One segment of a path, by position.
+    Segment(PathId, usize),
+    /// The symmetry axis.
+    Axis,
+    /// First side of a pair.
+    First(PairId),
+    /// Both sides of a pair.
+    Pair(PairId),
+}
+
+/// Where something holds, is integrated or reduced: a set of pieces of one kind (cells, edges or contact pairs), reference configuration.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Domain {
+    /// Pieces without repetition, in ascending order.
+    pub pieces: Vec<Piece>,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// A run-time parameter.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Param {
+    pub name: String,
+    pub doc: String,
+    pub dimension: Dimension,
+    /// May use parameters declared before it and constant lets.
+    pub default: Expr,
+    pub bounds: Option<Bounds>,
+    /// Unit in which the default was written (factor to SI, text), for `--help`; the coherent unit if the default is an expression.
+    pub unit: (f64, String),
+    pub span: Span,
+}
+
+/// Allowed values.
+#[derive(Clone, Debug)]
+pub enum Bounds {
+    /// `in a .. b`, both included.
+    Range(Expr, Expr),
+    /// `in {a, b, c}`.
+    Set(Vec<Expr>),
+}
+
+/// A named expression.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Let {
+    pub name: String,
+    pub doc: String,
+    pub value: Expr,
+    pub span: Span,
+}
+
+/// A function of the model or of the library.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Function {
+    pub name: String,
+    pub doc: String,
+    pub arguments: Vec<(LocalId, Type)>,
+    /// Lets of its block, in order; each may use those before it.
+    pub lets: Vec<(LocalId, Expr)>,
+    pub result: Expr,
+    pub span: Span,
+}
+
+/// Names of locals (for printing and emitted code), by [`LocalId`].
+pub type LocalNames = Vec<String>;
+
+/// Turning sense of an arc.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Turn {
+    Counterclockwise,
+    Clockwise,
+}
+
+/// How a segment gets to its end.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub enum SegmentKind {
+    Line,
+    Arc { about: Expr, turn: Turn },
+}
+
+/// One piece of a path.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Segment {
+    pub label: Option<String>,
+    pub kind: SegmentKind,
+    pub to: Expr,
+    pub span: Span,
+}
+
+/// A named curve.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Path {
+    pub name: String,
+    pub start: Expr,
+    pub segments: Vec<Segment>,
+    pub span: Span,
+}
+
+/// A named area: the inside of a loop of paths (`Piece::Path`, `Piece::Segment`, `Piece::Axis`).
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Region {
+    pub name: String,
+    pub boundary: Vec<Piece>,
+    pub span: Span,
+}
+
+/// Paths and regions; expressions use parameters and geometry lets only.
+#[derive(Clone, Debug, Default)]
+#[allow(missing_docs)]
+pub struct Geometry {
+    pub paths: Vec<Path>,
+    pub regions: Vec<Region>,
+}
+
+/// Mesh sizes.
+#[derive(Clone, Debug, Default)]
+#[allow(missing_docs)]
+pub struct MeshSettings {
+    /// `None` = everywhere. Where several apply the smallest wins.
+    pub sizes: Vec<(Expr, Option<Domain>)>,
+    pub growth: Option<Expr>,
+    pub quality: Option<Expr>,
+}
+
+/// Finite element spaces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Space {
+    /// Linear.
+    P1,
+    /// Quadratic.
+    P2,
+}
+
+/// Start of an unknown.
+#[derive(Clone, Debug)]
+pub enum Start {
+    /// `= e`: its value at the start.
+    Value(Expr),
+    /// `~ e`: a guess; the value is solved for.
+    Guess(Expr),
+    /// Neither: solved for.
+    Solved,
+}
+
+/// A field on regions.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Field {
+    pub name: String,
+    pub doc: String,
+    pub shape: Shape,
+    pub dimension: Dimension,
+    pub space: Space,
+    pub domain: Domain,
+    pub start: Start,
+    pub span: Span,
+}
+
+/// A scalar unknown in time.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct State {
+    pub name: String,
+    pub doc: String,
+    pub dimension: Dimension,
+    pub start: Start,
+    pub bounds: Option<(Expr, Expr)>,
+    pub span: Span,
+}
+
+/// Two surfaces that may meet.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Pair {
+    pub name: String,
+    pub first: Domain,
+    pub second: Domain,
+    /// Search distance [length].
+    pub search: Expr,
+    pub span: Span,
+}
+
+/// A statement of a physics block.
+#[derive(Clone, Debug)]
+pub enum StatementKind {
+    /// `energy W on D`; `None` = lumped (an energy of states and functionals).
+    Energy(Expr, Option<Domain>),
+    /// `residual R on D`, linear in test functions.
+    Residual(Expr, Domain),
+    /// `load q with f on D`: virtual work f . delta q on the right side; `None` = lumped.
+    Load(Expr, Expr, Option<Domain>),
+    /// `hold u = g on D`, or one component (tensor index) of it.
+    Hold(FieldId, Option<usize>, Expr, Domain),
+    /// `a == b;`
+    Equation(Expr, Expr),
+}
+
+/// A statement and where it stands.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Statement {
+    pub kind: StatementKind,
+    pub span: Span,
+}
+
+/// `physics name { .. }`
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Block {
+    pub name: String,
+    pub statements: Vec<Statement>,
+    pub span: Span,
+}
+
+/// What an event does.
+#[derive(Clone, Debug)]
+pub enum Action {
+    /// End the run.
+    Stop,
+    /// Print and record a message.
+    Warn(String),
+    /// Give a state a new value.
+    Set(StateId, Expr),
+}
+
+/// When an event fires.
+#[derive(Clone, Debug)]
+pub enum Trigger {
+    /// When its condition turns true.
+    When(Expr),
+    /// After every step.
+    EveryStep,
+    /// Every given time.
+    Every(Expr),
+}
+
+/// A named event.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Event {
+    pub name: String,
+    pub doc: String,
+    pub trigger: Trigger,
+    pub actions: Vec<Action>,
+    pub span: Span,
+}
+
+/// Time integrators.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Integrator {
+    /// Alexander's two-stage, second-order, L-stable SDIRK.
+    Sdirk2,
+    /// Backward Euler.
+    BackwardEuler,
+}
+
+/// `solve { .. }`, missing settings filled with defaults; expressions use parameters only.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Solve {
+    /// `None`: a stationary model.
+    pub time: Option<(Expr, Expr)>,
+    pub integrator: Integrator,
+    pub max_step: Option<Expr>,
+    pub min_step: Option<Expr>,
+    pub step_tolerance: Expr,
+    pub newton_tolerance: Expr,
+    pub newton_iterations: Expr,
+}
+
+/// When output is written.
+#[derive(Clone, Debug)]
+pub enum Every {
+    /// After every step.
+    Step,
+    /// At multiples of a time.
+    Time(Expr),
+}
+
+/// A named value in a table or frame.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Column {
+    pub name: String,
+    pub value: Expr,
+    /// Display unit: SI value of one display unit, and its text.
+    pub unit: (f64, String),
+}
+
+/// `fields on D every T: ..`
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Frames {
+    pub domain: Domain,
+    pub every: Every,
+    pub columns: Vec<Column>,
+}
+
+/// `table "file" every T: ..`
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Table {
+    pub file: String,
+    pub every: Every,
+    pub columns: Vec<Column>,
+}
+
+/// `output { .. }`
+#[derive(Clone, Debug, Default)]
+#[allow(missing_docs)]
+pub struct Output {
+    pub frames: Vec<Frames>,
+    pub tables: Vec<Table>,
+    pub checkpoint: Option<Every>,
+}
+
+/// `sweep name: p in {..}, .. => ..`
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Sweep {
+    pub name: String,
+    /// Parameters of one axis (several run along tuples) and their values.
+    pub axes: Vec<(Vec<ParamId>, Vec<Vec<Expr>>)>,
+    /// `None` for the column `outcome`.
+    pub columns: Vec<(String, Option<Expr>)>,
+    pub span: Span,
+}
+
+/// Part of a test.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub enum Check {
+    Let(LocalId, Expr),
+    /// `for x in a .. b by s { .. }` or over a set.
+    Each(LocalId, Values, Vec<Check>),
+    /// `expect condition;`
+    Holds(Expr, Span),
+    /// `expect a ~= b within tolerance [%];`
+    Near { value: Expr, expected: Expr, tolerance: Expr, percent: bool, span: Span },
+}
+
+/// Values of a loop.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub enum Values {
+    Range { from: Expr, to: Expr, by: Expr },
+    Set(Vec<Expr>),
+}
+
+/// `test "title" { .. }`
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Test {
+    pub title: String,
+    pub checks: Vec<Check>,
+    /// It reads `run`, `outcome`, an event or a time: it needs a finished run.
+    pub needs_run: bool,
+    pub span: Span,
+}
+
+/// The checked model.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Model {
+    pub name: String,
+    pub doc: String,
+    pub units: UnitSystem,
+    pub coordinates: Coordinates,
+    pub params: Vec<Param>,
+    /// Each uses only those before it.
+    pub lets: Vec<Let>,
+    pub functions: Vec<Function>,
+    pub locals: LocalNames,
+    pub geometry: Geometry,
+    pub mesh: MeshSettings,
+    pub fields: Vec<Field>,
+    pub states: Vec<State>,
+    pub pairs: Vec<Pair>,
+    pub blocks: Vec<Block>,
+    pub events: Vec<Event>,
+    pub solve: Solve,
+    pub output: Output,
+    pub sweeps: Vec<Sweep>,
+    pub tests: Vec<Test>,
+}

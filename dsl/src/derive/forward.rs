@@ -1,38 +1,36 @@
 //! The chain rule from the inputs to the roots: all roots, one direction.
 
-use crate::scalar::{Id, Node, Pool, Symbol, reachable};
+use crate::scalar::{Id, Node, Pool, Sweep, Symbol, reachable};
 
-use super::rules::partial;
+use super::rules::{carry, slopes};
 
 /// Derivatives of the roots, in their order, when each symbol moves at the given rate; symbols not listed rest.
 ///
 /// A symbol listed twice moves at its first rate.
 pub fn tangent(pool: &mut Pool, roots: &[Id], rates: &[(Symbol, Id)]) -> Vec<Id> {
     let zero = pool.zero();
-    let size = roots.iter().map(|id| id.index() + 1).max().unwrap_or(0);
-    let mut moves = vec![zero; size];
+    let mut moves = Sweep::new(roots, zero);
+    let mut moving = Vec::new();
     for id in reachable(pool, roots) {
-        let node = pool.node(id);
-        moves[id.index()] = match node {
+        let rate = match pool.node(id) {
             Node::Input(symbol) => rates.iter().find(|(s, _)| *s == symbol).map_or(zero, |&(_, rate)| rate),
-            _ => chain(pool, id, &node, |x| moves[x.index()], zero),
+            _ => chain(pool, id, &moving, |x| moves.get(x)),
         };
+        if rate != zero {
+            moves.set(id, rate);
+            moving.push(id);
+        }
     }
-    roots.iter().map(|root| moves[root.index()]).collect()
+    roots.iter().map(|&root| moves.get(root)).collect()
 }
 
 /// `sum_k (d node / d argument_k) rate(argument_k)`
-fn chain(pool: &mut Pool, id: Id, node: &Node, rate: impl Fn(Id) -> Id, zero: Id) -> Id {
-    let mut total = zero;
-    for (place, argument) in node.arguments().enumerate() {
-        let rate = rate(argument);
-        if rate != zero {
-            let slope = partial(pool, id, place);
-            let term = pool.mul(slope, rate);
-            total = pool.add(total, term);
-        }
-    }
-    total
+fn chain(pool: &mut Pool, id: Id, moving: &[Id], rate: impl Fn(Id) -> Id) -> Id {
+    let zero = pool.zero();
+    slopes(pool, id, moving).into_iter().fold(zero, |total, (x, slope)| {
+        let term = carry(pool, slope, rate(x));
+        pool.add(total, term)
+    })
 }
 
 /// Derivatives of the roots, in their order, with respect to one symbol.

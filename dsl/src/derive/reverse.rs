@@ -2,8 +2,7 @@
 
 use crate::scalar::{Id, Pool, Symbol, reachable};
 
-use super::forward::derivative;
-use super::rules::partial;
+use super::rules::{carry, slopes};
 
 /// Derivatives of the root with respect to each symbol, in their order, sharing one backward sweep.
 pub fn gradient(pool: &mut Pool, root: Id, symbols: &[Symbol]) -> Vec<Id> {
@@ -18,19 +17,16 @@ pub fn gradient(pool: &mut Pool, root: Id, symbols: &[Symbol]) -> Vec<Id> {
         if adjoint == zero {
             continue;
         }
-        for (place, argument) in pool.node(id).arguments().enumerate() {
-            if active.binary_search(&argument).is_ok() {
-                let slope = partial(pool, id, place);
-                let term = pool.mul(slope, adjoint);
-                adjoints[argument.index()] = pool.add(adjoints[argument.index()], term);
-            }
+        for (argument, slope) in slopes(pool, id, &active) {
+            let term = carry(pool, slope, adjoint);
+            adjoints[argument.index()] = pool.add(adjoints[argument.index()], term);
         }
     }
     inputs.iter().map(|input| adjoints[input.index()]).collect()
 }
 
 /// The nodes under `root` that depend on one of the inputs, ascending.
-fn dependent(pool: &Pool, root: Id, inputs: &[Id]) -> Vec<Id> {
+pub(super) fn dependent(pool: &Pool, root: Id, inputs: &[Id]) -> Vec<Id> {
     let mut depends = vec![false; root.index() + 1];
     let mut ids = reachable(pool, &[root]);
     ids.retain(|&id| {
@@ -39,14 +35,4 @@ fn dependent(pool: &Pool, root: Id, inputs: &[Id]) -> Vec<Id> {
         depends[id.index()]
     });
     ids
-}
-
-/// Second derivatives of the root: the lower triangle by rows, `H[i][j]` with `j <= i` at position `i (i + 1)/2 + j`.
-///
-/// The gradient is taken backwards and differentiated forwards.
-pub fn hessian(pool: &mut Pool, root: Id, symbols: &[Symbol]) -> Vec<Id> {
-    let slopes = gradient(pool, root, symbols);
-    let columns: Vec<Vec<Id>> =
-        symbols.iter().enumerate().map(|(j, &symbol)| derivative(pool, &slopes[j..], symbol)).collect();
-    (0..symbols.len()).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| columns[j][i - j]).collect()
 }

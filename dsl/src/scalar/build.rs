@@ -1,11 +1,11 @@
 //! Constructors of scalar expressions; each simplifies what it can see one or two levels down.
 //!
 //! Normal form, chosen so that derivatives share work:
-//! - constants are folded when the result is finite, stand first, and are pulled out of products; negative factors become a `Neg`;
+//! - constants are folded when the result is finite and stand first; negative factors become a `Neg`;
 //! - `Neg` is pulled out of products and absorbed by sums;
 //! - a quotient is a product with the shared reciprocal `1/y` (one rounding more than a division); by a constant, with its inverse;
-//! - a power is `x^n` (a chain of multiplications, on `1/x` for negative `n`) times `x^f` with `0 < f < 1`, so `x^(-2/3)`, its
-//!   derivatives and `1/x` need one cube root and one division;
+//! - an integer power is a chain of multiplications, on the shared `1/x` for a negative exponent; other powers stay whole, to be split
+//!   by [`lower_powers`](super::lower_powers) before code is printed;
 //! - sums take out a common factor: `a x + a y = a (x + y)`;
 //! - a `Select` with a zero arm moves outwards through products, so nothing is multiplied by a value from outside its domain.
 //!
@@ -186,7 +186,7 @@ impl Pool {
             }
             _ => {}
         }
-        self.constants_first(x, y).unwrap_or_else(|| self.intern(Node::Binary(Binary::Mul, x, y)))
+        self.merged_constants(x, y).unwrap_or_else(|| self.intern(Node::Binary(Binary::Mul, x, y)))
     }
 
     /// `x / y`, a product with the reciprocal.
@@ -249,12 +249,11 @@ impl Pool {
         if let Some((y, q)) = inner {
             return self.power(y, q);
         }
-        if p.floor().unsigned_abs() > LONGEST_CHAIN {
-            return self.intern(Node::Power(x, p));
+        match p.as_integer() {
+            Some(n) if n.unsigned_abs() <= LONGEST_CHAIN => self.integer_power(x, n),
+            _ if p == Rational::HALF => self.sqrt(x),
+            _ => self.intern(Node::Power(x, p)),
         }
-        let root = self.root(x, p.fraction());
-        let integer = self.integer_power(x, p.floor());
-        self.mul(integer, root)
     }
 
     /// `x` squared.
@@ -345,51 +344,38 @@ impl Pool {
     }
 
     /// `x` as `c y`.
-    fn split_constant(&self, x: Id) -> Option<(Id, Id)> {
+    pub(crate) fn split_constant(&self, x: Id) -> Option<(Id, Id)> {
         match self.node(x) {
             Node::Binary(Binary::Mul, c, y) if self.as_constant(c).is_some() => Some((c, y)),
             _ => None,
         }
     }
 
-    /// `(c x) (d y) = (c d) (x y)`, where at least one factor has a constant and the other is not one of infinite product with it.
-    fn constants_first(&mut self, x: Id, y: Id) -> Option<Id> {
-        match (self.as_constant(x), self.split_constant(x), self.split_constant(y)) {
-            (Some(_), _, Some((d, y))) => {
-                let c = self.fold_binary(Binary::Mul, x, d)?;
-                Some(self.mul(c, y))
-            }
-            (None, Some((c, x)), Some((d, y))) => {
-                let c = self.fold_binary(Binary::Mul, c, d)?;
-                let product = self.mul(x, y);
-                Some(self.mul(c, product))
-            }
-            (None, Some((c, x)), None) => {
-                let product = self.mul(x, y);
-                Some(self.mul(c, product))
-            }
-            (None, None, Some((d, y))) => {
-                let product = self.mul(x, y);
-                Some(self.mul(d, product))
-            }
-            _ => None,
+    /// A product with the constants of both sides in one: `(c x) (d y) = x ((c d) y)` and `c (x (d y)) = x ((c d) y)`.
+    fn merged_constants(&mut self, x: Id, y: Id) -> Option<Id> {
+        if self.as_constant(x).is_some() {
+            let (d, z, other) = self.inner_constant(y)?;
+            let c = self.fold_binary(Binary::Mul, x, d)?;
+            let scaled = self.mul(c, z);
+            return Some(other.map_or(scaled, |other| self.mul(other, scaled)));
         }
+        let ((c, x), (d, y)) = (self.split_constant(x)?, self.split_constant(y)?);
+        let c = self.fold_binary(Binary::Mul, c, d)?;
+        let scaled = self.mul(c, y);
+        Some(self.mul(x, scaled))
     }
 
-    /// `x^f` with `0 <= f < 1`.
-    fn root(&mut self, x: Id, f: Rational) -> Id {
-        match (f.numerator(), f.denominator()) {
-            (0, _) => self.one(),
-            (1, 2) => self.sqrt(x),
-            (2, 3) => {
-                let cube_root = self.power(x, Rational::THIRD);
-                self.square(cube_root)
-            }
-            _ => self.intern(Node::Power(x, f)),
+    /// `(d, z, w)` if `x` is `d z` or `w (d z)`.
+    fn inner_constant(&self, x: Id) -> Option<(Id, Id, Option<Id>)> {
+        if let Some((d, z)) = self.split_constant(x) {
+            return Some((d, z, None));
         }
+        let Node::Binary(Binary::Mul, a, b) = self.node(x) else { return None };
+        let inner = |id, other| self.split_constant(id).map(|(d, z)| (d, z, Some(other)));
+        inner(a, b).or_else(|| inner(b, a))
     }
 
-    fn integer_power(&mut self, x: Id, n: i32) -> Id {
+    pub(super) fn integer_power(&mut self, x: Id, n: i32) -> Id {
         match n {
             ..0 => {
                 let reciprocal = self.recip(x);
@@ -426,19 +412,47 @@ impl Pool {
     /// `(f, a, b)` with `x = f a` and `y = f b`, where pulling `f` out saves a multiplication.
     fn common_factor(&mut self, x: Id, y: Id) -> Option<(Id, Id, Id)> {
         let one = self.one();
-        let pair = |pool: &Pool, id| match pool.node(id) {
+        match (self.split_constant(x), self.split_constant(y)) {
+            _ if x == y => return Some((x, one, one)),
+            (Some((c, z)), _) if z == y => return Some((y, c, one)),
+            (_, Some((d, z))) if z == x => return Some((x, one, d)),
+            _ => {}
+        }
+        let (shallow, deep) = (self.factors(x), self.factors(y));
+        let (f, a, b) = shallow.iter().find_map(|&(f, a)| {
+            let &(_, b) = deep.iter().find(|(g, _)| *g == f)?;
+            Some((f, a, b))
+        })?;
+        let (a, b) = (self.product(a.into_iter().flatten()), self.product(b.into_iter().flatten()));
+        Some((f, a, b))
+    }
+
+    /// Every factor of a product with the others: `(x, y)` and `(y, x)` of `x y`, and all three of a product of inputs and sums of
+    /// two. (Factors of
+    /// intermediate products are left alone: those are shared more often than not.)
+    fn factors(&self, x: Id) -> Vec<(Id, [Option<Id>; 2])> {
+        let pair = |id| match self.node(id) {
             Node::Binary(Binary::Mul, a, b) => Some((a, b)),
             _ => None,
         };
-        match (pair(self, x), pair(self, y)) {
-            _ if x == y => Some((x, one, one)),
-            (Some((a, b)), Some((c, d))) if a == c => Some((a, b, d)),
-            (Some((a, b)), Some((c, d))) if a == d => Some((a, b, c)),
-            (Some((a, b)), Some((c, d))) if b == c => Some((b, a, d)),
-            (Some((a, b)), Some((c, d))) if b == d => Some((b, a, c)),
-            (Some((c, a)), _) if a == y && self.as_constant(c).is_some() => Some((y, c, one)),
-            (_, Some((d, b))) if b == x && self.as_constant(d).is_some() => Some((x, one, d)),
-            _ => None,
+        let Some((a, b)) = pair(x) else { return Vec::new() };
+        let mut factors = vec![(a, [Some(b), None]), (b, [Some(a), None])];
+        for (inner, other) in [(a, b), (b, a)] {
+            if let Some((c, d)) =
+                pair(inner).filter(|(c, d)| [*c, *d, other].iter().all(|&id| self.is_leaf(id)))
+            {
+                factors.extend([(c, [Some(other), Some(d)]), (d, [Some(other), Some(c)])]);
+            }
+        }
+        factors
+    }
+
+    /// A constant, an input, or a sum of two such, as `1 + u`.
+    fn is_leaf(&self, id: Id) -> bool {
+        let plain = |id| matches!(self.node(id), Node::Const(_) | Node::Input(_));
+        match self.node(id) {
+            Node::Binary(Binary::Add | Binary::Sub, x, y) => plain(x) && plain(y),
+            _ => plain(id),
         }
     }
 

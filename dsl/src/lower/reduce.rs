@@ -1,0 +1,189 @@
+//! Lowering of what takes whole fields or whole runs to one number.
+
+use super::{
+    Lowered, Lowering, Part, Place, Quantity, QuantityKind, Region, SymbolKind, Value, internal, unsupported,
+};
+use crate::model::{Domain, EventId, Expr, ExprKind, FieldId, Piece, Reduction, RegionId, Shape, Type};
+use crate::scalar::Id;
+use crate::source::Span;
+use ansatz_units::Dimension;
+
+/// A number that a finished run gives.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RunValue {
+    /// Smallest or largest value over the steps between two times, or over all.
+    Extreme(Reduction, Id, Option<[Id; 2]>),
+    /// Value at a time.
+    AtTime(Id, Id),
+    /// Value when an event fired first.
+    AtEvent(Id, EventId),
+    /// 1 if the event fired, else 0.
+    Fired(EventId),
+}
+
+impl<'m> Lowering<'m> {
+    /// Lowers a reduction over space, a measure, a resultant or a value at a point.
+    pub(super) fn reduce(&mut self, expr: &'m Expr) -> Lowered<Value> {
+        match &expr.kind {
+            ExprKind::Measure(domain) => Ok(Value::Scalar(self.measure(domain)?)),
+            ExprKind::Reduce(reduction, of, domain) => match domain.pieces.as_slice() {
+                &[Piece::First(pair) | Piece::Pair(pair)] => {
+                    let value = self.at(Place::Pair(pair), |lowering| lowering.scalar_expr(of))?;
+                    if matches!(reduction, Reduction::Mean | Reduction::Integral) {
+                        return Err(unsupported(expr.span, "only `min` and `max` reduce over a pair"));
+                    }
+                    let kind = QuantityKind::PairExtreme(*reduction, pair, value);
+                    Ok(Value::Scalar(self.quantity(kind, expr)))
+                }
+                _ => self.reduce_region(*reduction, of, domain, expr),
+            },
+            ExprKind::AtPoint(of, point) => self.at_point(of, point, expr),
+            ExprKind::Force(block, domain) => {
+                let field = self.field_of_force(&domain.pieces, domain.span)?;
+                let mut component =
+                    |k| self.quantity(QuantityKind::Force(*block, domain.pieces.clone(), field, k), expr);
+                let pair = [component(0), component(1)];
+                Ok(self.in_plane(pair))
+            }
+            _ => Err(internal(expr.span, "no reduction")),
+        }
+    }
+
+    /// Lowers a reduction over time, or a value at a time or event.
+    pub(super) fn run_value(&mut self, expr: &'m Expr) -> Lowered<Value> {
+        let value = match &expr.kind {
+            ExprKind::ReduceRun(reduction, of, range) => {
+                let range = match range {
+                    Some((from, to)) => Some([self.global_scalar(from)?, self.global_scalar(to)?]),
+                    None => None,
+                };
+                RunValue::Extreme(*reduction, self.global_scalar(of)?, range)
+            }
+            ExprKind::AtTime(of, time) => {
+                RunValue::AtTime(self.global_scalar(of)?, self.global_scalar(time)?)
+            }
+            ExprKind::AtEvent(of, event) => RunValue::AtEvent(self.global_scalar(of)?, *event),
+            _ => return Err(internal(expr.span, "no value of a run")),
+        };
+        Ok(Value::Scalar(self.run_symbol(value)))
+    }
+
+    fn reduce_region(
+        &mut self,
+        reduction: Reduction,
+        of: &'m Expr,
+        domain: &Domain,
+        expr: &'m Expr,
+    ) -> Lowered<Value> {
+        let region = region_of(domain)?;
+        let divisor = match reduction {
+            Reduction::Mean => Some(self.measure(domain)?),
+            _ => None,
+        };
+        let parts = self.on_parts(&region, |lowering| {
+            let value = lowering.expr(of)?;
+            let value = lowering.shaped(value, &of.ty);
+            Ok(value.components(&mut lowering.pool))
+        })?;
+        let size = parts.iter().map(|(_, components)| components.len()).min().unwrap_or(0);
+        let reduced: Vec<Id> = (0..size)
+            .map(|k| match reduction {
+                Reduction::Min | Reduction::Max => {
+                    let values = parts.iter().map(|(_, components)| components[k]).collect();
+                    self.quantity(QuantityKind::Extreme(reduction, region.clone(), values), expr)
+                }
+                Reduction::Mean | Reduction::Integral => self.integral(&parts, k, divisor, expr),
+            })
+            .collect();
+        Ok(Value::from_components(&reduced))
+    }
+
+    /// Integral of component `k` of the parts' densities.
+    fn integral(&mut self, parts: &[(Region, Vec<Id>)], k: usize, divisor: Option<Id>, expr: &'m Expr) -> Id {
+        let mut densities = Vec::new();
+        for (region, components) in parts {
+            let density = divisor.map_or(components[k], |divisor| self.pool.div(components[k], divisor));
+            if self.pool.as_constant(density) != Some(0.0) {
+                densities.push(Part { region: region.clone(), density });
+            }
+        }
+        if densities.is_empty() {
+            self.pool.zero()
+        } else {
+            self.quantity(QuantityKind::Integral(densities), expr)
+        }
+    }
+
+    fn at_point(&mut self, of: &'m Expr, point: &'m Expr, expr: &'m Expr) -> Lowered<Value> {
+        let place = self.global(point)?;
+        let axes = self.model.coordinates.frame.axes();
+        let Value::Vector(x) = place else { return Err(internal(point.span, "a point was expected")) };
+        let region = Region::Cells((0..self.model.geometry.regions.len()).map(RegionId).collect());
+        let parts = self.on_parts(&region, |lowering| {
+            let value = lowering.expr(of)?;
+            let value = lowering.shaped(value, &of.ty);
+            Ok(value.components(&mut lowering.pool))
+        })?;
+        let size = parts.iter().map(|(_, components)| components.len()).min().unwrap_or(0);
+        let values: Vec<Id> = (0..size)
+            .map(|k| {
+                let by_region = parts.iter().map(|(_, components)| components[k]).collect();
+                self.quantity(QuantityKind::Point([x[axes[0]], x[axes[1]]], region.clone(), by_region), expr)
+            })
+            .collect();
+        Ok(Value::from_components(&values))
+    }
+
+    /// The reference measure of a domain.
+    fn measure(&mut self, domain: &Domain) -> Lowered<Id> {
+        let region = region_of(domain)?;
+        let position = self.measures.iter().position(|known| *known == region).unwrap_or_else(|| {
+            self.measures.push(region);
+            self.measures.len() - 1
+        });
+        Ok(self.input(SymbolKind::Measure(position)))
+    }
+
+    /// The symbol of a quantity, shared by equal ones and named after the innermost `let`.
+    fn quantity(&mut self, kind: QuantityKind, expr: &Expr) -> Id {
+        let position = self.quantities.iter().position(|q| q.kind == kind).unwrap_or_else(|| {
+            let dimension =
+                if let Type::Value(_, dimension) = &expr.ty { *dimension } else { Dimension::NUMBER };
+            let name = self.unused_name();
+            self.quantities.push(Quantity { name, dimension, kind, span: expr.span });
+            self.quantities.len() - 1
+        });
+        self.input(SymbolKind::Quantity(position))
+    }
+
+    fn unused_name(&self) -> String {
+        let taken = |name: &str| self.quantities.iter().any(|q| q.name == name);
+        let numbered = (2..).map(|n| format!("{}_{n}", self.naming));
+        std::iter::once(self.naming.clone()).chain(numbered).find(|name| !taken(name)).unwrap_or_default()
+    }
+
+    /// The vector field whose unknowns carry forces on these edges: a displacement where there is one.
+    pub(crate) fn field_of_force(&self, pieces: &[Piece], span: Span) -> Lowered<FieldId> {
+        let regions = self.bounded_by(pieces);
+        let lives = |field: &crate::model::Field| {
+            field.shape == Shape::Vector
+                && field
+                    .domain
+                    .pieces
+                    .iter()
+                    .any(|piece| matches!(piece, Piece::Region(r) if regions.contains(r)))
+        };
+        let fields: Vec<usize> =
+            (0..self.model.fields.len()).filter(|&f| lives(&self.model.fields[f])).collect();
+        let displacement = fields.iter().find(|&&f| self.model.fields[f].dimension == Dimension::LENGTH);
+        displacement
+            .or(fields.first())
+            .map(|&f| FieldId(f))
+            .ok_or_else(|| unsupported(span, "no vector field lives on these edges"))
+    }
+}
+
+fn region_of(domain: &Domain) -> Lowered<Region> {
+    Region::of(domain)
+        .ok_or_else(|| unsupported(domain.span, "cells, edges and pairs cannot be mixed in one domain"))
+}

@@ -1,0 +1,100 @@
+//! What the opaque symbols of the scalar stage stand for, and how emitted code calls them.
+
+use std::collections::BTreeMap;
+
+use crate::model::{FieldId, Model, PairId, ParamId, Shape, StateId};
+use crate::scalar::Symbol;
+
+/// One scalar that a field offers at a point: a component, or its derivative by an in-plane coordinate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[allow(missing_docs)]
+pub struct FieldInput {
+    pub field: FieldId,
+    /// Stored component: in-plane direction 0 or 1 of a vector, 0 of a scalar.
+    pub component: usize,
+    /// In-plane direction of the derivative; `None` for the value.
+    pub derivative: Option<usize>,
+}
+
+/// Meaning of a symbol. The order is the order in which code reads them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum SymbolKind {
+    /// A parameter.
+    Parameter(ParamId),
+    /// Reference measure of a domain, index into [`Lowering::measures`](super::Lowering::measures).
+    Measure(usize),
+    /// A number that depends on the region of the point, index into [`Lowering::tables`](super::Lowering::tables).
+    Table(usize),
+    /// Time.
+    Time,
+    /// A state.
+    State(StateId),
+    /// Its time derivative.
+    StateRate(StateId),
+    /// A scalar made from fields, index into [`Lowering::quantities`](super::Lowering::quantities).
+    Quantity(usize),
+    /// Its time derivative.
+    QuantityRate(usize),
+    /// In-plane coordinate of the reference point.
+    Coordinate(usize),
+    /// A field at the point.
+    Field(FieldInput),
+    /// Its time derivative.
+    FieldRate(FieldInput),
+    /// A field under `frozen`: held in the variation.
+    Frozen(FieldInput),
+    /// The test function of a field.
+    Test(FieldInput),
+    /// Gap of a contact pair at a surface point.
+    Gap(PairId),
+    /// Factor d rate / d value of the time integrator.
+    Alpha,
+    /// Truth of a comparison, 1 or 0, decided outside.
+    Switch(usize),
+    /// A value of a finished run, index into [`Lowering::run_values`](super::Lowering::run_values).
+    Run(usize),
+    /// A variable of a derivative or of a test's loop.
+    Bound(usize),
+    /// Time derivative of a bound variable.
+    BoundRate(usize),
+}
+
+/// The table of symbols: each meaning has one symbol.
+#[derive(Clone, Debug, Default)]
+pub struct Symbols {
+    kinds: Vec<SymbolKind>,
+    symbols: BTreeMap<SymbolKind, Symbol>,
+}
+
+impl Symbols {
+    /// The symbol with this meaning.
+    pub fn symbol(&mut self, kind: SymbolKind) -> Symbol {
+        *self.symbols.entry(kind).or_insert_with(|| {
+            self.kinds.push(kind);
+            Symbol(self.kinds.len() as u32 - 1)
+        })
+    }
+
+    /// The symbol with this meaning, if it ever occurred.
+    pub fn find(&self, kind: SymbolKind) -> Option<Symbol> {
+        self.symbols.get(&kind).copied()
+    }
+
+    /// The meaning of a symbol of this table.
+    pub fn kind(&self, symbol: Symbol) -> SymbolKind {
+        self.kinds[symbol.0 as usize]
+    }
+}
+
+/// Name of a field's scalar: `u_r`, `du_r_dz`, `phi`, `dphi_dx`.
+pub fn input_name(model: &Model, input: FieldInput) -> String {
+    let field = &model.fields[input.field.0];
+    let value = match field.shape {
+        Shape::Scalar => field.name.clone(),
+        _ => format!("{}_{}", field.name, model.coordinates.names[input.component]),
+    };
+    match input.derivative {
+        None => value,
+        Some(direction) => format!("d{value}_d{}", model.coordinates.names[direction]),
+    }
+}

@@ -1,1 +1,4 @@
 //! ansatz
+pub mod lane;
+pub mod mesh;
+pub mod solve;

@@ -1,0 +1,251 @@
+//! Factors of a symmetric matrix: Cholesky when it is positive definite, Bunch-Kaufman otherwise.
+//!
+//! Both are supernodal and share one symbolic analysis after approximate minimum degree ordering.
+//! Bunch-Kaufman pivots only inside a supernode, so a matrix with zeros on its diagonal may defeat
+//! it; the pivots tell, and the caller then turns to LU.
+
+use super::error::LinearError;
+use super::matrix::ScaledMatrix;
+use super::storage::{Scratch, symbolic_matrix, zeros};
+use crate::solve::sparse::SparsePattern;
+use faer::perm::PermRef;
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::cholesky::supernodal::{
+    self, SupernodalIntranodeLbltRef, SupernodalLltRef, SymbolicSupernodalCholesky,
+};
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
+use faer::{Conj, MatMut, Par, Side};
+
+/// Always supernodal: measured no slower than simplicial from a hundred equations upwards, and the
+/// simplicial form has no pivoting. Any negative threshold has this effect, also for diagonal matrices.
+const SUPERNODAL: SupernodalThreshold = SupernodalThreshold(-1.0);
+
+/// What the pivots say about a factored matrix.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pivots {
+    /// Number of negative eigenvalues.
+    pub negative: usize,
+    /// Smallest magnitude; not a number when the factorisation broke down.
+    pub smallest: f64,
+    /// Equation, in elimination order, of the smallest pivot.
+    pub equation: usize,
+}
+
+impl Pivots {
+    const NONE: Self = Self { negative: 0, smallest: f64::INFINITY, equation: 0 };
+
+    /// Accounts for one pivot; the first that is not a number stays.
+    fn add(&mut self, equation: usize, magnitude: f64, negative: usize) {
+        self.negative += negative;
+        let smaller = magnitude < self.smallest || magnitude.is_nan();
+        if smaller && !self.smallest.is_nan() {
+            (self.smallest, self.equation) = (magnitude, equation);
+        }
+    }
+}
+
+/// Storage for the factors of symmetric matrices with one pattern.
+pub struct SymmetricFactor {
+    symbolic: SymbolicCholesky<u32>,
+    pattern: SymbolicSparseColMat<u32>,
+    /// Position of every pivot among the values of the factor.
+    diagonal: Vec<usize>,
+    values: Vec<f64>,
+    subdiagonal: Vec<f64>,
+    forward: Vec<u32>,
+    inverse: Vec<u32>,
+    permuted: Vec<f64>,
+    definite: bool,
+    scratch: Scratch,
+}
+
+/// Elimination order of a symmetric pattern and the symbolic factorisation that goes with it.
+pub struct Analysis {
+    symbolic: SymbolicCholesky<u32>,
+}
+
+impl Analysis {
+    /// Orders a pattern and finds the structure of its factor.
+    ///
+    /// # Errors
+    /// [`LinearError::NoEquations`], [`LinearError::TooLarge`].
+    pub fn new(pattern: &SparsePattern) -> Result<Self, LinearError> {
+        if pattern.size() == 0 {
+            return Err(LinearError::NoEquations);
+        }
+        let symbolic = factorize_symbolic_cholesky(
+            symbolic_matrix(pattern).as_ref(),
+            Side::Lower,
+            SymmetricOrdering::Amd,
+            CholeskySymbolicParams { supernodal_flop_ratio_threshold: SUPERNODAL, ..Default::default() },
+        )
+        .map_err(|_| LinearError::TooLarge)?;
+        Ok(Self { symbolic })
+    }
+
+    /// Original number of the equation to eliminate at each turn.
+    pub fn order(&self) -> Vec<u32> {
+        match self.symbolic.perm() {
+            Some(order) => order.arrays().0.to_vec(),
+            None => (0..self.symbolic.nrows() as u32).collect(),
+        }
+    }
+}
+
+impl SymmetricFactor {
+    /// Allocates the factor of matrices whose reordered pattern is `pattern`.
+    ///
+    /// # Errors
+    /// [`LinearError::TooLarge`].
+    pub fn new(analysis: Analysis, pattern: &SparsePattern) -> Result<Self, LinearError> {
+        let symbolic = analysis.symbolic;
+        let size = symbolic.nrows();
+        let structure = supernodes(&symbolic);
+        let scratch = Scratch::new(&[
+            supernodal::factorize_supernodal_numeric_llt_scratch::<u32, f64>(
+                structure,
+                Par::Seq,
+                Default::default(),
+            ),
+            supernodal::factorize_supernodal_numeric_intranode_lblt_scratch::<u32, f64>(
+                structure,
+                Par::Seq,
+                Default::default(),
+            ),
+            structure.solve_in_place_scratch::<f64>(1, Par::Seq),
+        ])?;
+        Ok(Self {
+            diagonal: diagonal_positions(structure),
+            values: zeros(symbolic.len_val())?,
+            pattern: symbolic_matrix(pattern),
+            subdiagonal: vec![0.0; size],
+            forward: vec![0; size],
+            inverse: vec![0; size],
+            permuted: vec![0.0; size],
+            definite: false,
+            scratch,
+            symbolic,
+        })
+    }
+
+    /// Cholesky `L L^T`, or `None` when a pivot is not positive.
+    pub fn llt(&mut self, matrix: &ScaledMatrix) -> Option<Pivots> {
+        self.definite = true;
+        supernodal::factorize_supernodal_numeric_llt(
+            &mut self.values,
+            SparseColMatRef::new(self.pattern.as_ref(), matrix.values()),
+            Default::default(),
+            supernodes(&self.symbolic),
+            Par::Seq,
+            self.scratch.stack(),
+            Default::default(),
+        )
+        .ok()?;
+        let mut pivots = Pivots::NONE;
+        for (equation, &position) in self.diagonal.iter().enumerate() {
+            pivots.add(equation, self.values[position].powi(2), 0);
+        }
+        Some(pivots)
+    }
+
+    /// Bunch-Kaufman `L B L^T` with pivots of one and two rows.
+    pub fn lblt(&mut self, matrix: &ScaledMatrix) -> Pivots {
+        self.definite = false;
+        self.subdiagonal.fill(0.0);
+        supernodal::factorize_supernodal_numeric_intranode_lblt(
+            &mut self.values,
+            &mut self.subdiagonal,
+            &mut self.forward,
+            &mut self.inverse,
+            SparseColMatRef::new(self.pattern.as_ref(), matrix.values()),
+            supernodes(&self.symbolic),
+            Par::Seq,
+            self.scratch.stack(),
+            Default::default(),
+        );
+        self.block_pivots()
+    }
+
+    /// Signs and sizes of the one- and two-row pivots of Bunch-Kaufman.
+    fn block_pivots(&self) -> Pivots {
+        let mut pivots = Pivots::NONE;
+        let mut k = 0;
+        while k < self.diagonal.len() {
+            let (equation, first) = (self.forward[k] as usize, self.values[self.diagonal[k]]);
+            let coupling = self.subdiagonal[k];
+            if coupling == 0.0 || k + 1 == self.diagonal.len() {
+                pivots.add(equation, first.abs(), usize::from(first < 0.0));
+                k += 1;
+            } else {
+                let second = self.values[self.diagonal[k + 1]];
+                let determinant = first * second - coupling * coupling;
+                let largest = first.abs().max(second.abs()).max(coupling.abs());
+                let negative = if determinant < 0.0 { 1 } else { 2 * usize::from(first < 0.0) };
+                pivots.add(equation, determinant.abs() / largest, negative);
+                k += 2;
+            }
+        }
+        pivots
+    }
+
+    /// Solves in place for the columns of `x`, in elimination order, `size` numbers each.
+    ///
+    /// # Errors
+    /// [`LinearError::TooLarge`] when there is no memory for so many columns.
+    pub fn solve(&mut self, x: &mut [f64]) -> Result<(), LinearError> {
+        let size = self.diagonal.len();
+        let columns = x.len() / size;
+        let structure = supernodes(&self.symbolic);
+        let stack = self.scratch.stack_for(structure.solve_in_place_scratch::<f64>(columns, Par::Seq))?;
+        if self.definite {
+            let factor = SupernodalLltRef::new(structure, &self.values);
+            let unknowns = MatMut::from_column_major_slice_mut(x, size, columns);
+            factor.solve_in_place_with_conj(Conj::No, unknowns, Par::Seq, stack);
+        } else {
+            let pivoting = PermRef::new_checked(&self.forward, &self.inverse, size);
+            let factor =
+                SupernodalIntranodeLbltRef::new(structure, &self.values, &self.subdiagonal, pivoting);
+            permute_columns(x, &self.forward, &mut self.permuted);
+            let unknowns = MatMut::from_column_major_slice_mut(x, size, columns);
+            factor.solve_in_place_no_numeric_permute_with_conj(Conj::No, unknowns, Par::Seq, stack);
+            permute_columns(x, &self.inverse, &mut self.permuted);
+        }
+        Ok(())
+    }
+}
+
+/// `x[k] = x[order[k]]` in every column.
+fn permute_columns(x: &mut [f64], order: &[u32], work: &mut [f64]) {
+    for column in x.chunks_exact_mut(order.len()) {
+        work.copy_from_slice(column);
+        for (value, &source) in column.iter_mut().zip(order) {
+            *value = work[source as usize];
+        }
+    }
+}
+
+/// The structure of the factor.
+fn supernodes(symbolic: &SymbolicCholesky<u32>) -> &SymbolicSupernodalCholesky<u32> {
+    match symbolic.raw() {
+        SymbolicCholeskyRaw::Supernodal(structure) => structure,
+        SymbolicCholeskyRaw::Simplicial(_) => {
+            unreachable!("{SUPERNODAL:?} never chooses the simplicial form")
+        }
+    }
+}
+
+/// Where each pivot lies: supernodes are dense columns, square block first, then the rows below.
+fn diagonal_positions(structure: &SymbolicSupernodalCholesky<u32>) -> Vec<usize> {
+    let mut positions = Vec::with_capacity(structure.nrows());
+    for s in 0..structure.n_supernodes() {
+        let columns = (structure.supernode_end()[s] - structure.supernode_begin()[s]) as usize;
+        let rows = columns + structure.supernode(s).pattern().len();
+        let begin = structure.col_ptr_for_val()[s] as usize;
+        positions.extend((0..columns).map(|column| begin + column * (rows + 1)));
+    }
+    positions
+}

@@ -1,0 +1,4 @@
+//! Solving the equations of a step: sparse patterns, direct linear solvers, borders.
+
+pub mod linear;
+pub mod sparse;

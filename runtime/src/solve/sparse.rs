@@ -1,0 +1,282 @@
+//! The sparsity pattern of an assembled matrix: which entries exist and where their values lie.
+//!
+//! Assembly asks the pattern once for the position of every element entry and afterwards only adds
+//! to a plain slice of values; [`super::linear`] factors such a slice. The pattern holds free
+//! equations only: whoever numbers the unknowns leaves the constrained ones out.
+
+/// Whether a matrix equals its transpose, which decides what is stored and how it is factored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MatrixKind {
+    /// Equal to its transpose; only the lower triangle is stored.
+    Symmetric,
+    /// Symmetric pattern, unsymmetric values; every entry is stored.
+    Unsymmetric,
+}
+
+/// Positions of the entries of a square sparse matrix in compressed columns.
+///
+/// Rows ascend within a column and every diagonal entry is present.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SparsePattern {
+    kind: MatrixKind,
+    column_starts: Vec<u32>,
+    rows: Vec<u32>,
+}
+
+impl SparsePattern {
+    /// Builds the pattern of `size` equations in which all equations of one element are coupled.
+    ///
+    /// Each item of `elements` lists the free equations of one element; repetitions do no harm.
+    /// The result does not depend on the order of the elements.
+    ///
+    /// # Panics
+    /// When an element names an equation that is not below `size`.
+    pub fn from_elements<'a>(
+        size: usize,
+        kind: MatrixKind,
+        elements: impl IntoIterator<Item = &'a [u32]>,
+    ) -> Self {
+        let elements = Incidence::new(size, elements);
+        let mut column_starts = Vec::with_capacity(size + 1);
+        let mut rows = Vec::new();
+        let mut last_column_of_row = vec![u32::MAX; size];
+        column_starts.push(0);
+        for column in 0..size as u32 {
+            let begin = rows.len();
+            rows.push(column);
+            last_column_of_row[column as usize] = column;
+            for &row in elements.around(column).flatten() {
+                let stored = kind == MatrixKind::Unsymmetric || row > column;
+                if stored && last_column_of_row[row as usize] != column {
+                    last_column_of_row[row as usize] = column;
+                    rows.push(row);
+                }
+            }
+            rows[begin..].sort_unstable();
+            column_starts.push(rows.len() as u32);
+        }
+        Self { kind, column_starts, rows }
+    }
+
+    /// Number of equations.
+    pub fn size(&self) -> usize {
+        self.column_starts.len() - 1
+    }
+
+    /// Number of stored entries: the length of a slice of values.
+    pub fn entries(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Symmetric or not.
+    pub fn kind(&self) -> MatrixKind {
+        self.kind
+    }
+
+    /// Start of every column in [`Self::rows`] and in the values; `size + 1` numbers.
+    pub fn column_starts(&self) -> &[u32] {
+        &self.column_starts
+    }
+
+    /// Row of every stored entry.
+    pub fn rows(&self) -> &[u32] {
+        &self.rows
+    }
+
+    /// Range of the entries of `column` in the rows and in the values.
+    pub fn column(&self, column: usize) -> std::ops::Range<usize> {
+        self.column_starts[column] as usize..self.column_starts[column + 1] as usize
+    }
+
+    /// Index of the entry (`row`, `column`) in the values, or `None` when the matrix has none there.
+    ///
+    /// A symmetric matrix answers with the same index for both triangles.
+    pub fn position(&self, row: u32, column: u32) -> Option<usize> {
+        let (row, column) = match self.kind {
+            MatrixKind::Symmetric => (row.max(column), row.min(column)),
+            MatrixKind::Unsymmetric => (row, column),
+        };
+        let range = self.column(column as usize);
+        self.rows[range.clone()].binary_search(&row).ok().map(|k| range.start + k)
+    }
+
+    /// Calls `visit(position, row, column)` for every stored entry, column by column.
+    pub fn for_each(&self, mut visit: impl FnMut(usize, usize, usize)) {
+        for column in 0..self.size() {
+            for position in self.column(column) {
+                visit(position, self.rows[position] as usize, column);
+            }
+        }
+    }
+
+    /// Sums the magnitudes of the entries in every row of the whole matrix.
+    pub fn sum_rows(&self, values: &[f64], sums: &mut [f64]) {
+        sums.fill(0.0);
+        self.for_each(|position, row, column| {
+            sums[row] += values[position].abs();
+            if self.kind == MatrixKind::Symmetric && row != column {
+                sums[column] += values[position].abs();
+            }
+        });
+    }
+
+    /// The pattern with its equations renumbered: new equation `k` is old equation `order[k]`.
+    ///
+    /// Also returns the position among the old entries of every new entry.
+    pub fn reordered(&self, order: &[u32]) -> (Self, Vec<u32>) {
+        let mut place = vec![0; order.len()];
+        for (new, &old) in order.iter().enumerate() {
+            place[old as usize] = new as u32;
+        }
+        let mut entries = Vec::with_capacity(self.entries());
+        self.for_each(|position, row, column| {
+            let (row, column) = (place[row], place[column]);
+            entries.push(match self.kind {
+                MatrixKind::Symmetric => (row.max(column), row.min(column), position as u32),
+                MatrixKind::Unsymmetric => (row, column, position as u32),
+            });
+        });
+        Self::from_entries(self.kind, self.size(), &entries)
+    }
+
+    /// Both triangles of the pattern, as if it were unsymmetric.
+    ///
+    /// Also returns the position among the stored entries of every entry.
+    pub fn expanded(&self) -> (Self, Vec<u32>) {
+        let mut entries = Vec::with_capacity(2 * self.entries());
+        self.for_each(|position, row, column| {
+            entries.push((row as u32, column as u32, position as u32));
+            if self.kind == MatrixKind::Symmetric && row != column {
+                entries.push((column as u32, row as u32, position as u32));
+            }
+        });
+        Self::from_entries(MatrixKind::Unsymmetric, self.size(), &entries)
+    }
+
+    /// Sorts distinct entries (row, column, source) into compressed columns with their sources.
+    fn from_entries(kind: MatrixKind, size: usize, entries: &[(u32, u32, u32)]) -> (Self, Vec<u32>) {
+        let (_, by_row) = counting_sort(size, entries, |entry| entry.0);
+        let (column_starts, by_column) = counting_sort(size, &by_row, |entry| entry.1);
+        let rows = by_column.iter().map(|entry| entry.0).collect();
+        let sources = by_column.iter().map(|entry| entry.2).collect();
+        (Self { kind, column_starts, rows }, sources)
+    }
+
+    /// Subtracts the product: `y -= A x`, with `values` the entries of `A`.
+    pub fn subtract_product(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
+        for column in 0..self.size() {
+            let range = self.column(column);
+            let entries = self.rows[range.clone()].iter().zip(&values[range]);
+            let factor = x[column];
+            match self.kind {
+                MatrixKind::Unsymmetric => entries.for_each(|(&row, a)| y[row as usize] -= a * factor),
+                MatrixKind::Symmetric => {
+                    let mut dot = 0.0;
+                    for (&row, a) in entries.skip(1) {
+                        y[row as usize] -= a * factor;
+                        dot += a * x[row as usize];
+                    }
+                    y[column] -= dot + values[self.column_starts[column] as usize] * factor;
+                }
+            }
+        }
+    }
+}
+
+/// Stable sort by a key below `size`; also returns where every key starts.
+fn counting_sort<T: Copy>(size: usize, items: &[T], key: impl Fn(&T) -> u32) -> (Vec<u32>, Vec<T>) {
+    let mut starts = vec![0; size + 1];
+    for item in items {
+        starts[key(item) as usize + 1] += 1;
+    }
+    for k in 0..size {
+        starts[k + 1] += starts[k];
+    }
+    let mut next = starts.clone();
+    let mut sorted = items.to_vec();
+    for item in items {
+        let place = &mut next[key(item) as usize];
+        sorted[*place as usize] = *item;
+        *place += 1;
+    }
+    (starts, sorted)
+}
+
+/// The elements around each equation, in compressed form.
+struct Incidence {
+    element_starts: Vec<usize>,
+    equations: Vec<u32>,
+    around_starts: Vec<u32>,
+    around: Vec<(u32, u32)>,
+}
+
+impl Incidence {
+    fn new<'a>(size: usize, elements: impl IntoIterator<Item = &'a [u32]>) -> Self {
+        let (mut element_starts, mut equations, mut uses) = (vec![0], Vec::new(), Vec::new());
+        for (number, element) in elements.into_iter().enumerate() {
+            equations.extend_from_slice(element);
+            element_starts.push(equations.len());
+            uses.extend(element.iter().map(|&equation| (equation, number as u32)));
+        }
+        let (around_starts, around) = counting_sort(size, &uses, |use_| use_.0);
+        Self { element_starts, equations, around_starts, around }
+    }
+
+    /// Equations of each element that holds `equation`.
+    fn around(&self, equation: u32) -> impl Iterator<Item = &[u32]> {
+        let equation = equation as usize;
+        let range = self.around_starts[equation] as usize..self.around_starts[equation + 1] as usize;
+        self.around[range].iter().map(|&(_, element)| {
+            let element = element as usize;
+            &self.equations[self.element_starts[element]..self.element_starts[element + 1]]
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ELEMENTS: [&[u32]; 2] = [&[2, 0], &[3, 2, 2]];
+
+    #[test]
+    fn symmetric_pattern_stores_the_lower_triangle_and_every_diagonal() {
+        let pattern = SparsePattern::from_elements(4, MatrixKind::Symmetric, ELEMENTS);
+        assert_eq!(pattern.column_starts(), [0, 2, 3, 5, 6]);
+        assert_eq!(pattern.rows(), [0, 2, 1, 2, 3, 3]);
+        assert_eq!(pattern.position(0, 2), Some(1));
+        assert_eq!(pattern.position(2, 0), Some(1));
+        assert_eq!(pattern.position(3, 0), None);
+    }
+
+    #[test]
+    fn unsymmetric_pattern_stores_both_triangles() {
+        let pattern = SparsePattern::from_elements(4, MatrixKind::Unsymmetric, ELEMENTS);
+        assert_eq!(pattern.rows(), [0, 2, 1, 0, 2, 3, 2, 3]);
+        assert_ne!(pattern.position(0, 2), pattern.position(2, 0));
+    }
+
+    #[test]
+    fn pattern_does_not_depend_on_the_order_of_elements() {
+        let forward = SparsePattern::from_elements(4, MatrixKind::Symmetric, ELEMENTS);
+        let backward = SparsePattern::from_elements(4, MatrixKind::Symmetric, ELEMENTS.into_iter().rev());
+        assert_eq!(forward, backward);
+    }
+
+    #[test]
+    fn both_kinds_multiply_alike() {
+        let x = [1.0, -2.0, 3.0, 5.0];
+        let products = [MatrixKind::Symmetric, MatrixKind::Unsymmetric].map(|kind| {
+            let pattern = SparsePattern::from_elements(4, kind, ELEMENTS);
+            let mut values = vec![0.0; pattern.entries()];
+            pattern.for_each(|position, row, column| {
+                values[position] = (1 + row + column + row * column) as f64
+            });
+            let mut y = [0.0; 4];
+            pattern.subtract_product(&values, &x, &mut y);
+            y
+        });
+        assert_eq!(products[0], [-10.0, 8.0, -90.0, -116.0]);
+        assert_eq!(products[0], products[1]);
+    }
+}

@@ -169,7 +169,7 @@ impl Pool {
         }
         let (x, y) = self.ordered(x, y);
         match (self.node(x), self.node(y)) {
-            (Node::Const(0.0), _) => return x,
+            (Node::Const(0.0), _) if !self.is_reciprocal_of_zero(y) => return x,
             (Node::Const(1.0), _) => return y,
             (Node::Const(c), _) if c < 0.0 => {
                 let size = self.constant(-c);
@@ -458,6 +458,11 @@ impl Pool {
 
     fn is_zero(&self, id: Id) -> bool {
         self.as_constant(id) == Some(0.0)
+    }
+
+    /// Reciprocals of constants are folded unless they are infinite.
+    fn is_reciprocal_of_zero(&self, id: Id) -> bool {
+        matches!(self.node(id), Node::Binary(Binary::Div, _, y) if self.as_constant(y).is_some())
     }
 
     fn has_zero_arm(&self, node: &Node) -> bool {

@@ -18,3 +18,6 @@ pub use pool::{Id, Node, Pool, Symbol};
 pub use rational::Rational;
 pub(crate) use walk::Sweep;
 pub use walk::{depends_on, eval, reachable, substitute, symbols_of};
+
+#[cfg(test)]
+mod tests;

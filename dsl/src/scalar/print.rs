@@ -74,8 +74,7 @@ impl Printer<'_> {
             return (format!("{}/{}", used(x, Place::Product), used(y, Place::Tight)), Place::Product);
         }
         match self.pool.node(id) {
-            Node::Const(c) if c < 0.0 => (format!("{c}"), Place::Sum),
-            Node::Const(c) => (format!("{c}"), Place::Tight),
+            Node::Const(c) => (number(c), if c < 0.0 { Place::Sum } else { Place::Tight }),
             Node::Input(symbol) => ((self.name)(symbol), Place::Tight),
             Node::Unary(Unary::Neg, x) => (format!("-{}", used(x, Place::Product)), Place::Sum),
             Node::Unary(op, x) => (format!("{}({})", op.name(), used(x, Place::Alone)), Place::Tight),
@@ -104,6 +103,12 @@ impl Printer<'_> {
             }
         }
     }
+}
+
+/// Shortest decimal that reads back as the same number, with an exponent where that saves zeros.
+fn number(value: f64) -> String {
+    let plain = value == 0.0 || (1e-4..1e9).contains(&value.abs());
+    if plain { format!("{value}") } else { format!("{value:e}") }
 }
 
 #[cfg(test)]
@@ -142,9 +147,9 @@ mod tests {
             formula(|p, [_, _, c]| {
                 let one = p.one();
                 let sum = p.add(one, c);
-                p.power(sum, Rational::THIRD)
+                p.power(sum, Rational::MINUS_THIRD)
             }),
-            "r = (1 + c)^(1/3)"
+            "r = (1 + c)^(-1/3)"
         );
         assert_eq!(
             formula(|p, [a, _, c]| {
@@ -161,5 +166,10 @@ mod tests {
             }),
             "r = b - (a*c - c)"
         );
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!([2.0, -0.5, 1.381e-23, 0.0].map(number), ["2", "-0.5", "1.381e-23", "0"]);
     }
 }

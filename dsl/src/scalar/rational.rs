@@ -12,8 +12,8 @@ pub struct Rational {
 }
 
 impl Rational {
-    /// One third.
-    pub const THIRD: Rational = Rational { numerator: 1, denominator: 3 };
+    /// Minus one third.
+    pub const MINUS_THIRD: Rational = Rational { numerator: -1, denominator: 3 };
     /// One half.
     pub const HALF: Rational = Rational { numerator: 1, denominator: 2 };
 
@@ -62,16 +62,6 @@ impl Rational {
         f64::from(self.numerator) / f64::from(self.denominator)
     }
 
-    /// Largest integer not above it.
-    pub fn floor(self) -> i32 {
-        self.numerator.div_euclid(self.denominator)
-    }
-
-    /// What [`floor`](Self::floor) leaves: in `0 .. 1`.
-    pub fn fraction(self) -> Rational {
-        Rational { numerator: self.numerator.rem_euclid(self.denominator), denominator: self.denominator }
-    }
-
     /// Product; `None` if it does not fit.
     pub fn times(self, other: Rational) -> Option<Rational> {
         let numerator = i64::from(self.numerator) * i64::from(other.numerator);
@@ -88,7 +78,7 @@ impl Rational {
     pub fn power(self, x: f64) -> f64 {
         match (self.numerator, self.denominator) {
             (n, 1) => x.powi(n),
-            (1, 3) if x >= 0.0 => x.cbrt(),
+            (n, 3) if x >= 0.0 => x.cbrt().powi(n),
             _ => x.powf(self.to_f64()),
         }
     }
@@ -97,7 +87,7 @@ impl Rational {
     pub fn cost(self) -> u32 {
         match (self.numerator, self.denominator) {
             (_, 1) => 2 * DIVISION,
-            (1, 3) => TRANSCENDENTAL,
+            (_, 2 | 3) => TRANSCENDENTAL,
             _ => 2 * TRANSCENDENTAL,
         }
     }
@@ -127,12 +117,6 @@ mod tests {
         assert_eq!(Rational::new(1, 0), None);
         assert_eq!(Rational::new(1, i64::from(i32::MAX) + 1), None);
         assert_eq!(Rational::new(i64::MIN, -1), None);
-    }
-
-    #[test]
-    fn floor_and_fraction_add_up() {
-        let p = Rational::new(-2, 3).unwrap();
-        assert_eq!((p.floor(), p.fraction()), (-1, Rational::new(1, 3).unwrap()));
     }
 
     #[test]

@@ -22,9 +22,19 @@ use unsymmetric::UnsymmetricFactor;
 /// Pivots of the scaled matrix below this are rounding errors: the matrix is singular.
 const SMALLEST_PIVOT: f64 = 64.0 * f64::EPSILON;
 /// Backward error above which a solution is refined.
-const BACKWARD_ERROR: f64 = 16.0 * f64::EPSILON;
+pub(super) const BACKWARD_ERROR: f64 = 16.0 * f64::EPSILON;
 /// Refinement steps at most.
-const REFINEMENTS: usize = 2;
+pub(super) const REFINEMENTS: usize = 2;
+
+/// What a symmetric matrix is expected to be; a wrong guess costs time and nothing else.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Definiteness {
+    /// All eigenvalues positive: try Cholesky first.
+    #[default]
+    Positive,
+    /// Eigenvalues of both signs: start with Bunch-Kaufman.
+    Indefinite,
+}
 
 /// How a matrix was factored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +56,16 @@ pub struct FactorReport {
     pub negative_pivots: Option<usize>,
     /// Smallest pivot of the scaled matrix, whose diagonal is near one; `None` for LU.
     pub smallest_pivot: Option<f64>,
+}
+
+impl FactorReport {
+    /// What to expect of the next matrix of a sequence in which changes are gradual.
+    pub fn definiteness(&self) -> Definiteness {
+        match self.negative_pivots {
+            Some(0) => Definiteness::Positive,
+            _ => Definiteness::Indefinite,
+        }
+    }
 }
 
 /// Outcome of a solve, the worst over the right-hand sides, in maximum norms of the scaled system.
@@ -102,29 +122,16 @@ impl LinearSolver {
 
     /// Factors a matrix given by the values at the positions of the pattern.
     ///
-    /// A symmetric matrix is first taken to be positive definite; when it is not, it is factored
-    /// again by Bunch-Kaufman, and by LU if that breaks down. [`Self::factor_indefinite`] saves the
-    /// first attempt.
+    /// A symmetric matrix expected to be positive definite is factored by Cholesky; when that
+    /// fails, or is not expected to succeed, by Bunch-Kaufman, and by LU if that breaks down.
     ///
     /// # Errors
     /// Entries that are not finite, empty rows or columns, singular matrices, want of memory.
-    pub fn factor(&mut self, values: &[f64]) -> Result<FactorReport, LinearError> {
-        self.factor_as(values, true)
-    }
-
-    /// Factors a matrix that is expected to be indefinite, as the previous one was.
-    ///
-    /// # Errors
-    /// As [`Self::factor`].
-    pub fn factor_indefinite(&mut self, values: &[f64]) -> Result<FactorReport, LinearError> {
-        self.factor_as(values, false)
-    }
-
-    fn factor_as(&mut self, values: &[f64], maybe_definite: bool) -> Result<FactorReport, LinearError> {
+    pub fn factor(&mut self, values: &[f64], expected: Definiteness) -> Result<FactorReport, LinearError> {
         self.factored = None;
         self.matrix.load(values)?;
         let report = match &mut self.symmetric {
-            Some(factor) => factor_symmetric(factor, &self.matrix, maybe_definite),
+            Some(factor) => factor_symmetric(factor, &self.matrix, expected),
             None => Ok(None),
         };
         let report = match report {
@@ -146,9 +153,7 @@ impl LinearSolver {
     /// [`LinearError::NotFactored`], right-hand sides or solutions that are not finite.
     pub fn solve(&mut self, rhs: &mut [f64]) -> Result<SolveReport, LinearError> {
         let size = self.size();
-        for buffer in [&mut self.rhs, &mut self.solution, &mut self.residual] {
-            buffer.resize(rhs.len(), 0.0);
-        }
+        self.resize(rhs.len());
         for (original, scaled) in rhs.chunks_exact(size).zip(self.rhs.chunks_exact_mut(size)) {
             self.matrix.load_rhs(original, scaled)?;
         }
@@ -187,6 +192,25 @@ impl LinearSolver {
         }
     }
 
+    /// Replaces a right-hand side `b` by the residual `b - A x` of any `x`, and says how large it is.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub fn residual(&mut self, x: &[f64], b: &mut [f64]) -> Result<SolveReport, LinearError> {
+        self.resize(b.len());
+        self.matrix.load_rhs(b, &mut self.rhs)?;
+        self.matrix.load_solution(x, &mut self.solution);
+        let report = self.check();
+        self.matrix.unload_residual(&self.residual, b);
+        Ok(report)
+    }
+
+    fn resize(&mut self, length: usize) {
+        for buffer in [&mut self.rhs, &mut self.solution, &mut self.residual] {
+            buffer.resize(length, 0.0);
+        }
+    }
+
     /// Residuals of all columns, and how large they are.
     fn check(&mut self) -> SolveReport {
         let size = self.size();
@@ -218,20 +242,19 @@ enum Target {
 fn factor_symmetric(
     factor: &mut SymmetricFactor,
     matrix: &ScaledMatrix,
-    maybe_definite: bool,
+    expected: Definiteness,
 ) -> Result<Option<FactorReport>, LinearError> {
     let report = |method, pivots: Pivots| FactorReport {
         method,
         negative_pivots: Some(pivots.negative),
         smallest_pivot: Some(pivots.smallest),
     };
-    if maybe_definite && matrix.has_positive_diagonal() {
-        if let Some(pivots) = factor.llt(matrix) {
-            return match pivots.smallest >= SMALLEST_PIVOT {
-                true => Ok(Some(report(Method::Llt, pivots))),
-                false => Err(LinearError::Singular { equation: pivots.equation }),
-            };
-        }
+    let attempt = expected == Definiteness::Positive && matrix.has_positive_diagonal();
+    if let Some(pivots) = attempt.then(|| factor.llt(matrix)).flatten() {
+        return match pivots.smallest >= SMALLEST_PIVOT {
+            true => Ok(Some(report(Method::Llt, pivots))),
+            false => Err(LinearError::Singular { equation: pivots.equation }),
+        };
     }
     let pivots = factor.lblt(matrix);
     Ok((pivots.smallest >= SMALLEST_PIVOT).then(|| report(Method::Lblt, pivots)))

@@ -125,6 +125,20 @@ impl ScaledMatrix {
         }
     }
 
+    /// Scales and reorders a solution: the inverse of [`Self::unload_solution`].
+    pub fn load_solution(&self, original: &[f64], scaled: &mut [f64]) {
+        for ((value, &equation), factor) in scaled.iter_mut().zip(&self.order).zip(&self.scaling.columns) {
+            *value = original[equation as usize] / factor;
+        }
+    }
+
+    /// Undoes scaling and order of a residual.
+    pub fn unload_residual(&self, scaled: &[f64], original: &mut [f64]) {
+        for ((value, &equation), factor) in scaled.iter().zip(&self.order).zip(&self.scaling.rows) {
+            original[equation as usize] = value / factor;
+        }
+    }
+
     fn check_finite(&self) -> Result<(), LinearError> {
         if self.values.iter().all(|value| value.is_finite()) {
             return Ok(());

@@ -65,7 +65,7 @@ fn triangles(nx: u32, ny: u32, fixed: bool) -> System {
     let width = 2 * nx + 1;
     let node = |x: u32, y: u32| y * width + x;
     let equation = |node: u32, component: u32| match fixed {
-        true => (node % width > 0).then(|| 2 * (node - node / width - 1) + component),
+        true => (!node.is_multiple_of(width)).then(|| 2 * (node - node / width - 1) + component),
         false => Some(2 * node + component),
     };
     let mut elements: Vec<Vec<u32>> = Vec::new();
@@ -126,7 +126,7 @@ fn badly_scaled(mut system: System) -> System {
 /// Factors, solves, and returns both reports after checking the residual on the original matrix.
 fn solve(system: &System) -> (FactorReport, SolveReport) {
     let mut solver = system.solver();
-    let factored = solver.factor(&system.values).unwrap();
+    let factored = solver.factor(&system.values, Definiteness::Positive).unwrap();
     let b = Noise(11).vector(system.pattern.size());
     let mut x = b.clone();
     let solved = solver.solve(&mut x).unwrap();
@@ -177,17 +177,17 @@ fn a_shifted_membrane_loses_as_many_pivots_either_way() {
         }
     });
     let mut solver = system.solver();
-    let first = solver.factor(&system.values).unwrap();
+    let first = solver.factor(&system.values, Definiteness::Positive).unwrap();
     assert_eq!(first.method, Method::Lblt);
     assert!(first.negative_pivots.unwrap() > 3);
-    assert_eq!(solver.factor_indefinite(&system.values).unwrap(), first);
+    assert_eq!(solver.factor(&system.values, Definiteness::Indefinite).unwrap(), first);
     assert_eq!(solve(&system).0, first);
 }
 
 #[test]
 fn a_definite_matrix_expected_to_be_indefinite_has_no_negative_pivot() {
     let system = triangles(4, 4, true);
-    let report = system.solver().factor_indefinite(&system.values).unwrap();
+    let report = system.solver().factor(&system.values, Definiteness::Indefinite).unwrap();
     assert_eq!((report.method, report.negative_pivots), (Method::Lblt, Some(0)));
 }
 
@@ -203,7 +203,7 @@ fn sixteen_powers_of_ten_in_rows_and_columns_do_not_matter() {
     let scaled = |system: System| {
         let system = badly_scaled(system);
         let mut solver = system.solver();
-        solver.factor(&system.values).unwrap();
+        solver.factor(&system.values, Definiteness::Positive).unwrap();
         // a right-hand side with the scale of the rows
         let mut b = vec![0.0; system.pattern.size()];
         system.pattern.subtract_product(&system.values, &vec![1.0; b.len()], &mut b);
@@ -221,7 +221,7 @@ fn sixteen_powers_of_ten_in_rows_and_columns_do_not_matter() {
 #[test]
 fn an_unsupported_body_is_singular() {
     let system = triangles(6, 5, false);
-    let result = system.solver().factor(&system.values);
+    let result = system.solver().factor(&system.values, Definiteness::Positive);
     assert!(matches!(result, Err(LinearError::Singular { .. })), "{result:?}");
 }
 
@@ -231,7 +231,7 @@ fn a_dependent_equation_is_named() {
     for kind in [MatrixKind::Symmetric, MatrixKind::Unsymmetric] {
         let pattern = SparsePattern::from_elements(8, kind, [[3, 5].as_slice()]);
         let solver = &mut LinearSolver::new(&pattern).unwrap();
-        let result = solver.factor(&vec![1.0; pattern.entries()]);
+        let result = solver.factor(&vec![1.0; pattern.entries()], Definiteness::Positive);
         assert!(matches!(result, Err(LinearError::Singular { equation: 3 | 5 })), "{kind:?} {result:?}");
         assert_eq!(solver.solve(&mut [1.0; 8]), Err(LinearError::NotFactored));
     }
@@ -246,12 +246,12 @@ fn empty_equations_are_named() {
                 values[position] = 0.0;
             }
         });
-        let result = LinearSolver::new(&pattern).unwrap().factor(&values);
+        let result = LinearSolver::new(&pattern).unwrap().factor(&values, Definiteness::Positive);
         assert_eq!(result, Err(LinearError::EmptyRow { equation: 17 }));
     }
     let System { pattern, mut values } = dominant(50, MatrixKind::Unsymmetric, |_| 1.0);
     values[pattern.column(23)].fill(0.0);
-    let result = LinearSolver::new(&pattern).unwrap().factor(&values);
+    let result = LinearSolver::new(&pattern).unwrap().factor(&values, Definiteness::Positive);
     assert_eq!(result, Err(LinearError::EmptyColumn { equation: 23 }));
 }
 
@@ -259,13 +259,13 @@ fn empty_equations_are_named() {
 fn numbers_that_are_not_finite_are_named() {
     let mut system = dominant(50, MatrixKind::Symmetric, |_| 1.0);
     let mut solver = system.solver();
-    solver.factor(&system.values).unwrap();
+    solver.factor(&system.values, Definiteness::Positive).unwrap();
     let mut rhs = vec![1.0; 50];
     rhs[31] = f64::NAN;
     assert_eq!(solver.solve(&mut rhs), Err(LinearError::NonFiniteRightHandSide { equation: 31 }));
     let position = system.pattern.position(8, 7).unwrap();
     system.values[position] = f64::INFINITY;
-    let result = solver.factor(&system.values);
+    let result = solver.factor(&system.values, Definiteness::Positive);
     assert!(matches!(result, Err(LinearError::NonFiniteEntry { row: 7 | 8, column: 7 | 8 })), "{result:?}");
 }
 
@@ -293,7 +293,7 @@ fn several_right_hand_sides_are_solved_at_once() {
     for kind in [MatrixKind::Symmetric, MatrixKind::Unsymmetric] {
         let system = dominant(60, kind, |k| if k == 5 { -1.0 } else { 1.0 });
         let mut solver = system.solver();
-        solver.factor(&system.values).unwrap();
+        solver.factor(&system.values, Definiteness::Positive).unwrap();
         let b = Noise(5).vector(180);
         let mut x = b.clone();
         solver.solve(&mut x).unwrap();
@@ -310,10 +310,10 @@ fn reused_storage_gives_identical_bits() {
     let mut solver = system.solver();
     let b = Noise(5).vector(system.pattern.size());
     let mut solutions = [0, 1].map(|_| {
-        solver.factor(&system.values).unwrap();
+        solver.factor(&system.values, Definiteness::Positive).unwrap();
         let mut x = b.clone();
         solver.solve(&mut x).unwrap();
-        solver.factor(&indefinite).unwrap();
+        solver.factor(&indefinite, Definiteness::Positive).unwrap();
         let mut y = [b.clone(), b.clone()].concat();
         solver.solve(&mut y).unwrap();
         [x, y].concat()
@@ -335,7 +335,7 @@ fn one_equation_is_divided() {
     for kind in [MatrixKind::Symmetric, MatrixKind::Unsymmetric] {
         let pattern = SparsePattern::from_elements(1, kind, std::iter::empty());
         let mut solver = LinearSolver::new(&pattern).unwrap();
-        solver.factor(&[4.0]).unwrap();
+        solver.factor(&[4.0], Definiteness::Positive).unwrap();
         let mut x = [2.0];
         solver.solve(&mut x).unwrap();
         assert_eq!(x, [0.5]);

@@ -2,7 +2,7 @@
 
 use super::{Condition, Lowered, Lowering, RunValue, SymbolKind, Value, internal, unsupported};
 use crate::model::{Expr, ExprKind, Relation};
-use crate::scalar::Pool;
+use crate::scalar::{Id, Pool};
 
 impl<'m> Lowering<'m> {
     /// Lowers a truth value at the current place.
@@ -42,7 +42,7 @@ impl<'m> Lowering<'m> {
     }
 
     /// The symbol of a value of a finished run.
-    pub(super) fn run_symbol(&mut self, value: RunValue) -> crate::scalar::Id {
+    pub(super) fn run_symbol(&mut self, value: RunValue) -> Id {
         let position = self.run_values.iter().position(|v| *v == value).unwrap_or_else(|| {
             self.run_values.push(value);
             self.run_values.len() - 1
@@ -51,7 +51,7 @@ impl<'m> Lowering<'m> {
     }
 }
 
-fn compare(pool: &Pool, relation: Relation, a: crate::scalar::Id, b: crate::scalar::Id) -> Condition {
+fn compare(pool: &Pool, relation: Relation, a: Id, b: Id) -> Condition {
     match (pool.as_constant(a), pool.as_constant(b)) {
         (Some(x), Some(y)) => Condition::Constant(holds(relation, x, y)),
         _ => Condition::Compare(relation, a, b),
@@ -71,7 +71,7 @@ pub fn holds(relation: Relation, x: f64, y: f64) -> bool {
 
 impl Condition {
     /// Truth from the values of scalars.
-    pub fn truth(&self, value: &dyn Fn(crate::scalar::Id) -> f64) -> bool {
+    pub fn truth(&self, value: &dyn Fn(Id) -> f64) -> bool {
         match self {
             Condition::Constant(truth) => *truth,
             Condition::Compare(relation, a, b) => holds(*relation, value(*a), value(*b)),
@@ -81,9 +81,19 @@ impl Condition {
         }
     }
 
+    /// The scalars that it compares.
+    pub fn scalars(&self) -> Vec<Id> {
+        match self {
+            Condition::Constant(_) => Vec::new(),
+            Condition::Compare(_, a, b) => vec![*a, *b],
+            Condition::And(a, b) | Condition::Or(a, b) => [a.scalars(), b.scalars()].concat(),
+            Condition::Not(a) => a.scalars(),
+        }
+    }
+
     /// A scalar that is positive where the condition holds and changes its sign, continuously where its sides do, where it turns.
     /// `None` for an equality, which no sign can tell.
-    pub fn margin(&self, pool: &mut Pool) -> Option<crate::scalar::Id> {
+    pub fn margin(&self, pool: &mut Pool) -> Option<Id> {
         Some(match self {
             Condition::Constant(truth) => pool.constant(if *truth { 1.0 } else { -1.0 }),
             Condition::Compare(Relation::Less | Relation::LessEqual, a, b) => pool.sub(*b, *a),

@@ -124,6 +124,28 @@ impl<'m> Lowering<'m> {
         self.scalar(&value, expr.span)
     }
 
+    /// Lowers an expression at the current place; a literal 0 gets the shape of its type.
+    pub fn here(&mut self, expr: &'m Expr) -> Lowered<Value> {
+        let value = self.expr(expr)?;
+        Ok(self.shaped(value, &expr.ty))
+    }
+
+    /// Lowers a scalar at the current place.
+    pub fn scalar_here(&mut self, expr: &'m Expr) -> Lowered<Id> {
+        self.scalar_expr(expr)
+    }
+
+    /// Lowers a scalar at the surface points of a pair.
+    pub fn scalar_on_pair(&mut self, expr: &'m Expr, pair: PairId) -> Lowered<Id> {
+        self.at(Place::Pair(pair), |lowering| lowering.scalar_expr(expr))
+    }
+
+    /// Time derivative of a scalar.
+    pub fn rate_of_scalar(&mut self, of: Id, span: Span) -> Lowered<Id> {
+        let rate = self.rate(&Value::Scalar(of), span)?;
+        self.scalar(&rate, span)
+    }
+
     /// Lowers expressions at the points of a domain, once if regions differ in numbers only, else once for each region.
     pub fn on_parts<T>(
         &mut self,

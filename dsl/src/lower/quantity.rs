@@ -30,6 +30,19 @@ pub enum QuantityKind {
     Force(BlockId, Vec<Piece>, FieldId, usize),
 }
 
+impl QuantityKind {
+    /// The scalars at points that it is made from.
+    pub fn densities(&self) -> Vec<Id> {
+        match self {
+            QuantityKind::Integral(parts) => parts.iter().map(|part| part.density).collect(),
+            QuantityKind::Extreme(_, _, values) => values.clone(),
+            QuantityKind::Point(at, _, values) => at.iter().chain(values).copied().collect(),
+            QuantityKind::PairExtreme(_, _, value) => vec![*value],
+            QuantityKind::Force(..) => Vec::new(),
+        }
+    }
+}
+
 /// A density on a part of a domain.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]

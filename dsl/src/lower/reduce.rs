@@ -21,6 +21,18 @@ pub enum RunValue {
     Fired(EventId),
 }
 
+impl RunValue {
+    /// The scalars that are evaluated at single times.
+    pub fn roots(&self) -> Vec<Id> {
+        match self {
+            RunValue::Extreme(_, of, range) => range.iter().flatten().copied().chain([*of]).collect(),
+            RunValue::AtTime(of, time) => vec![*of, *time],
+            RunValue::AtEvent(of, _) => vec![*of],
+            RunValue::Fired(_) => Vec::new(),
+        }
+    }
+}
+
 impl<'m> Lowering<'m> {
     /// Lowers a reduction over space, a measure, a resultant or a value at a point.
     pub(super) fn reduce(&mut self, expr: &'m Expr) -> Lowered<Value> {
@@ -144,13 +156,17 @@ impl<'m> Lowering<'m> {
         Ok(self.input(SymbolKind::Measure(position)))
     }
 
-    /// The symbol of a quantity, shared by equal ones and named after the innermost `let`.
+    /// The symbol of a quantity that an expression makes.
     fn quantity(&mut self, kind: QuantityKind, expr: &Expr) -> Id {
+        let dimension = if let Type::Value(_, dimension) = &expr.ty { *dimension } else { Dimension::NUMBER };
+        self.share_quantity(kind, dimension, expr.span)
+    }
+
+    /// The symbol of a quantity, shared by equal ones and named after the innermost `let`.
+    pub(crate) fn share_quantity(&mut self, kind: QuantityKind, dimension: Dimension, span: Span) -> Id {
         let position = self.quantities.iter().position(|q| q.kind == kind).unwrap_or_else(|| {
-            let dimension =
-                if let Type::Value(_, dimension) = &expr.ty { *dimension } else { Dimension::NUMBER };
             let name = self.unused_name();
-            self.quantities.push(Quantity { name, dimension, kind, span: expr.span });
+            self.quantities.push(Quantity { name, dimension, kind, span });
             self.quantities.len() - 1
         });
         self.input(SymbolKind::Quantity(position))

@@ -1,0 +1,166 @@
+//! Stage 5 of 6: from statements to what is assembled. Input: the model, lowered expression by expression. Output: [`Forms`]: integrals
+//! with fluxes and tangents, equations of states, functionals, observables, outputs, all in point or global symbols. Knows no element.
+//!
+//! - [`vary`]: the rule of variation; every energy, load and weak form becomes a [`Term`].
+//! - [`physics`]: the statements of the blocks.
+//! - [`states`]: equations of states.
+//! - [`observe`]: which scalars are rows of the system (functionals) and which are only looked at (observables).
+//! - [`output`], [`event`], [`expect`]: tables, frames, events, run-time tests.
+
+mod degree;
+mod event;
+mod expect;
+mod observe;
+mod output;
+mod physics;
+mod states;
+mod vary;
+
+use crate::diagnostic::Diagnostic;
+use crate::lower::{Lowered, Lowering, Region};
+use crate::model::{BlockId, FieldId, Model, PairId};
+use crate::scalar::Id;
+use crate::source::Span;
+
+pub use event::{Action, Event, Trigger};
+pub use expect::{Expectation, RunTest};
+pub use observe::{Functional, FunctionalKind};
+pub use output::{Column, FrameColumn, Frames, PointForm, PointInput, Table, When};
+pub use states::{Equation, StateSystem};
+pub use vary::Term;
+
+/// Everything that is to be emitted, apart from geometry and parameters, which the model has.
+#[derive(Debug)]
+pub struct Forms<'m> {
+    /// The pool and the meaning of its symbols.
+    pub lowering: Lowering<'m>,
+    /// Integrals of the balance.
+    pub terms: Vec<Term>,
+    /// Prescribed components.
+    pub holds: Vec<Hold>,
+    /// Energies of gaps.
+    pub contacts: Vec<Contact>,
+    /// Loads on functionals.
+    pub couplings: Vec<Coupling>,
+    /// Equations of the states.
+    pub states: StateSystem,
+    /// Scalars that are rows of the system.
+    pub functionals: Vec<Functional>,
+    /// Quantities that only outputs and events read, each after those it reads.
+    pub observables: Vec<usize>,
+    /// Start of each field.
+    pub starts: Vec<Vec<Id>>,
+    /// Displacement field of each pair.
+    pub displacements: Vec<FieldId>,
+    /// Events.
+    pub events: Vec<Event>,
+    /// Tables.
+    pub tables: Vec<Table>,
+    /// Frames.
+    pub frames: Vec<Frames>,
+    /// Tests that read a finished run.
+    pub tests: Vec<RunTest>,
+}
+
+/// `hold` of one component.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Hold {
+    pub field: FieldId,
+    /// Stored component.
+    pub component: usize,
+    pub region: Region,
+    pub value: Id,
+    pub span: Span,
+}
+
+/// An energy of the gap of a pair, per reference area.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Contact {
+    pub name: String,
+    pub block: BlockId,
+    pub pair: PairId,
+    /// Integrated over both sides.
+    pub both: bool,
+    /// The energy and its first and second derivative by the gap.
+    pub law: [Id; 3],
+    pub span: Span,
+}
+
+/// Virtual work `coefficient * delta quantity`, on the left side.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Coupling {
+    pub block: BlockId,
+    pub quantity: usize,
+    pub coefficient: Id,
+    pub span: Span,
+}
+
+/// Builds all forms of a model.
+///
+/// # Errors
+/// Everything that the compiler cannot do, in order of place.
+pub fn build(model: &Model) -> Result<Forms<'_>, Vec<Diagnostic>> {
+    let mut builder = Builder { lowering: Lowering::new(model), problems: Vec::new() };
+    let physics = builder.physics();
+    let functionals = builder.functionals(&physics);
+    let states = builder.states(&physics.differences);
+    let rows: Vec<usize> = functionals.iter().map(|functional| functional.quantity).collect();
+    let starts = builder.starts();
+    let displacements = builder.displacements();
+    let events = builder.events(&rows);
+    let (tables, frames) = builder.outputs(&rows);
+    let tests = builder.run_tests(&rows);
+    let mut roots: Vec<Id> = events.iter().flat_map(Event::roots).collect();
+    roots.extend(tables.iter().flat_map(Table::roots));
+    roots.extend(frames.iter().flat_map(Frames::roots));
+    roots.extend(tests.iter().flat_map(RunTest::roots));
+    roots.extend(builder.run_roots());
+    let observables = builder.observables(&rows, &roots);
+    let Builder { lowering, problems } = builder;
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    let physics::Physics { terms, holds, contacts, couplings, .. } = physics;
+    Ok(Forms {
+        lowering,
+        terms,
+        holds,
+        contacts,
+        couplings,
+        states,
+        functionals,
+        observables,
+        starts,
+        displacements,
+        events,
+        tables,
+        frames,
+        tests,
+    })
+}
+
+/// Forms in the making; problems are collected so that all are reported.
+struct Builder<'m> {
+    lowering: Lowering<'m>,
+    problems: Vec<Diagnostic>,
+}
+
+impl<'m> Builder<'m> {
+    /// What `make` gives, or nothing and a problem more.
+    fn attempt<T>(&mut self, make: impl FnOnce(&mut Lowering<'m>) -> Lowered<T>) -> Option<T> {
+        match make(&mut self.lowering) {
+            Ok(value) => Some(value),
+            Err(problem) => {
+                self.problems.push(*problem);
+                None
+            }
+        }
+    }
+
+    fn states(&mut self, differences: &[(Id, Span)]) -> StateSystem {
+        StateSystem::new(&mut self.lowering, differences)
+    }
+}

@@ -1,0 +1,215 @@
+//! The statements of the physics blocks.
+
+use super::vary::{Origin, Term, Variation, linearise};
+use super::{Builder, Contact, Coupling, Hold};
+use crate::derive;
+use crate::lower::{Lowered, Lowering, Region, SymbolKind, Value, internal, unsupported};
+use crate::model::{BlockId, Domain, Expr, FieldId, Piece, Shape, Statement, StatementKind};
+use crate::scalar::{Id, symbols_of};
+use crate::source::Span;
+
+/// What the blocks say.
+#[derive(Default)]
+pub(super) struct Physics {
+    pub(super) terms: Vec<Term>,
+    pub(super) holds: Vec<Hold>,
+    pub(super) contacts: Vec<Contact>,
+    pub(super) couplings: Vec<Coupling>,
+    /// Left minus right side of each equation.
+    pub(super) differences: Vec<(Id, Span)>,
+}
+
+impl<'m> Builder<'m> {
+    /// Lowers and varies all statements.
+    pub(super) fn physics(&mut self) -> Physics {
+        let mut physics = Physics::default();
+        for (b, block) in self.lowering.model.blocks.iter().enumerate() {
+            for statement in &block.statements {
+                self.lowering.name_after(&block.name);
+                self.attempt(|lowering| physics.statement(lowering, BlockId(b), statement));
+            }
+        }
+        physics
+    }
+}
+
+impl Physics {
+    fn statement<'m>(&mut self, lowering: &mut Lowering<'m>, block: BlockId, statement: &'m Statement) -> Lowered<()> {
+        let span = statement.span;
+        match &statement.kind {
+            StatementKind::Energy(density, Some(domain)) => match domain.pieces.as_slice() {
+                &[Piece::First(pair) | Piece::Pair(pair)] => {
+                    let both = matches!(domain.pieces[0], Piece::Pair(_));
+                    let law = gap_law(lowering, density, pair)?;
+                    let name = format!("{} energy", lowering.model.blocks[block.0].name);
+                    self.contacts.push(Contact { name, block, pair, both, law, span });
+                    Ok(())
+                }
+                _ => self.integral(lowering, (block, "energy", span), domain, |lowering| {
+                    let density = lowering.scalar_here(density)?;
+                    Ok(Variation::of_density(lowering, density))
+                }),
+            },
+            StatementKind::Energy(energy, None) => {
+                let energy = lowering.global_scalar(energy)?;
+                let slopes = quantity_slopes(lowering, &[energy]);
+                self.couplings.extend(slopes.into_iter().map(|(quantity, slopes)| Coupling { block, quantity, coefficient: slopes[0], span }));
+                Ok(())
+            }
+            StatementKind::Residual(residual, domain) => {
+                self.integral(lowering, (block, "residual", span), domain, |lowering| {
+                    let residual = lowering.scalar_here(residual)?;
+                    Ok(Variation::of_residual(lowering, residual))
+                })
+            }
+            StatementKind::Load(of, with, Some(domain)) => self.integral(lowering, (block, "load", span), domain, |lowering| {
+                let (of, with) = (lowering.components_here(of)?, lowering.components_here(with)?);
+                Ok(Variation::of_load(lowering, &of, &with))
+            }),
+            StatementKind::Load(of, with, None) => self.lumped_load(lowering, block, of, with, span),
+            StatementKind::Hold(field, component, value, domain) => self.hold(lowering, *field, *component, value, domain, span),
+            StatementKind::Equation(left, right) => {
+                let (left_id, right_id) = (lowering.global_scalar(left)?, lowering.global_scalar(right)?);
+                self.differences.push((lowering.pool.sub(left_id, right_id), span));
+                Ok(())
+            }
+        }
+    }
+
+    /// A statement on cells or edges.
+    fn integral<'m>(
+        &mut self,
+        lowering: &mut Lowering<'m>,
+        (block, kind, span): (BlockId, &str, Span),
+        domain: &Domain,
+        vary: impl FnMut(&mut Lowering<'m>) -> Lowered<Variation>,
+    ) -> Lowered<()> {
+        let region = Region::of(domain)
+            .ok_or_else(|| unsupported(domain.span, "only an energy of the gap can stand on a contact pair"))?;
+        for (region, variation) in lowering.on_parts(&region, vary)? {
+            if variation.is_zero() {
+                continue;
+            }
+            let name = format!("{} {kind}", lowering.model.blocks[block.0].name);
+            let term = linearise(lowering, Origin { name, block: Some(block), span }, region, variation);
+            check(lowering, &term)?;
+            if !term.tests.is_empty() {
+                self.terms.push(term);
+            }
+        }
+        Ok(())
+    }
+
+    fn lumped_load<'m>(&mut self, lowering: &mut Lowering<'m>, block: BlockId, of: &'m Expr, with: &'m Expr, span: Span) -> Lowered<()> {
+        let (of, with) = (lowering.global(of)?, lowering.global(with)?);
+        let (of, with) = (of.components(&mut lowering.pool), with.components(&mut lowering.pool));
+        for (quantity, slopes) in quantity_slopes(lowering, &of) {
+            let work = lowering.pool.dot(&with, &slopes);
+            let coefficient = lowering.pool.neg(work);
+            self.couplings.push(Coupling { block, quantity, coefficient, span });
+        }
+        Ok(())
+    }
+
+    fn hold<'m>(
+        &mut self,
+        lowering: &mut Lowering<'m>,
+        field: FieldId,
+        component: Option<usize>,
+        value: &'m Expr,
+        domain: &Domain,
+        span: Span,
+    ) -> Lowered<()> {
+        let region = Region::of(domain).ok_or_else(|| internal(domain.span, "`hold` on a contact pair"))?;
+        let model = lowering.model;
+        let parts = lowering.on_parts(&region, |lowering| lowering.components_here(value))?;
+        let stored = match model.fields[field.0].shape {
+            Shape::Scalar => vec![(0, 0)],
+            _ => model.coordinates.frame.axes().into_iter().enumerate().collect(),
+        };
+        for (region, values) in parts {
+            for &(stored, axis) in &stored {
+                let value = match (component, values.as_slice()) {
+                    (Some(wanted), _) if wanted != axis => continue,
+                    (_, [one]) => *one,
+                    (_, many) => many[axis],
+                };
+                if symbols_of(&lowering.pool, &[value]).iter().any(|&s| follows_fields(lowering.symbols.kind(s))) {
+                    return Err(unsupported(span, "a held value cannot depend on fields or on means of fields"));
+                }
+                self.holds.push(Hold { field, component: stored, region: region.clone(), value, span });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether a symbol changes with the unknowns of the mesh.
+fn follows_fields(kind: SymbolKind) -> bool {
+    use SymbolKind as K;
+    matches!(kind, K::Field(_) | K::FieldRate(_) | K::Frozen(_) | K::Quantity(_) | K::QuantityRate(_) | K::Gap(_) | K::Table(_))
+}
+
+/// The energy of a gap with its derivatives.
+fn gap_law<'m>(lowering: &mut Lowering<'m>, density: &'m Expr, pair: crate::model::PairId) -> Lowered<[Id; 3]> {
+    let energy = lowering.scalar_on_pair(density, pair)?;
+    let gap = lowering.symbols.symbol(SymbolKind::Gap(pair));
+    for symbol in symbols_of(&lowering.pool, &[energy]) {
+        use SymbolKind as K;
+        if matches!(lowering.symbols.kind(symbol), K::State(_) | K::StateRate(_) | K::Quantity(_) | K::QuantityRate(_)) {
+            return Err(unsupported(density.span, "an energy of the gap cannot depend on states or functionals"));
+        }
+    }
+    let force = derive::derivative(&mut lowering.pool, &[energy], gap)[0];
+    let stiffness = derive::derivative(&mut lowering.pool, &[force], gap)[0];
+    Ok([energy, force, stiffness])
+}
+
+/// Derivative of the roots by each quantity in them; time derivatives are varied like what they are derivatives of.
+fn quantity_slopes(lowering: &mut Lowering<'_>, roots: &[Id]) -> Vec<(usize, Vec<Id>)> {
+    let mut quantities: Vec<usize> = symbols_of(&lowering.pool, roots)
+        .into_iter()
+        .filter_map(|symbol| match lowering.symbols.kind(symbol) {
+            SymbolKind::Quantity(k) | SymbolKind::QuantityRate(k) => Some(k),
+            _ => None,
+        })
+        .collect();
+    quantities.sort_unstable();
+    quantities.dedup();
+    quantities
+        .into_iter()
+        .map(|k| {
+            let symbols = [SymbolKind::Quantity(k), SymbolKind::QuantityRate(k)].map(|kind| lowering.symbols.symbol(kind));
+            let one = lowering.pool.one();
+            let rates: Vec<_> = symbols.into_iter().map(|symbol| (symbol, one)).collect();
+            (k, derive::tangent(&mut lowering.pool, roots, &rates))
+        })
+        .collect()
+}
+
+/// Refuses what kernels cannot do.
+pub(super) fn check(lowering: &Lowering<'_>, term: &Term) -> Lowered<()> {
+    let symbols = symbols_of(&lowering.pool, &term.flux.iter().copied().chain(term.value).collect::<Vec<_>>());
+    let kinds: Vec<SymbolKind> = symbols.into_iter().map(|symbol| lowering.symbols.kind(symbol)).collect();
+    let gradient = |kind: &SymbolKind| match kind {
+        SymbolKind::Field(input) | SymbolKind::FieldRate(input) => input.derivative.is_some(),
+        _ => false,
+    };
+    let on_edges = matches!(term.region, Region::Edges(_));
+    if on_edges && (kinds.iter().any(gradient) || term.tests.iter().any(|test| test.derivative.is_some())) {
+        return Err(unsupported(term.span, "gradients on edges are not supported yet; only values and rates of fields are"));
+    }
+    let energy_of_quantity = term.block.is_some() && term.value.is_some() && kinds.iter().any(|kind| matches!(kind, SymbolKind::Quantity(_)));
+    if energy_of_quantity {
+        return Err(unsupported(term.span, "an energy density cannot contain a mean or an integral; use a `load`, or `frozen`"));
+    }
+    Ok(())
+}
+
+impl<'m> Lowering<'m> {
+    /// Components of a value at the current place, a literal 0 in the shape of its type.
+    pub(super) fn components_here(&mut self, expr: &'m Expr) -> Lowered<Vec<Id>> {
+        let value: Value = self.here(expr)?;
+        Ok(value.components(&mut self.pool))
+    }
+}

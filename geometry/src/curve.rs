@@ -113,7 +113,21 @@ impl Curve {
 
     /// Distance from `p` to the curve.
     pub fn distance(&self, p: Point) -> f64 {
-        point::distance(p, self.point(self.project(p)))
+        match *self {
+            Curve::Line { .. } => point::distance(p, self.point(self.project(p))),
+            Curve::Arc { from, to, centre, radius, .. } => match self.faces(p) {
+                true => (point::distance(p, centre) - radius).abs(),
+                false => point::distance(p, from).min(point::distance(p, to)),
+            },
+        }
+    }
+
+    /// Whether the ray from the centre of an arc through `p` meets the arc.
+    fn faces(&self, p: Point) -> bool {
+        let Curve::Arc { from, to, centre, sweep, .. } = *self else { return false };
+        let [a, ray, b] = [from, p, to].map(|q| point::sub(q, centre));
+        let (after, before) = (point::cross(a, ray) * sweep >= 0.0, point::cross(ray, b) * sweep >= 0.0);
+        if sweep.abs() <= PI { after && before } else { after || before }
     }
 
     /// The part between parameters `s0` and `s1`; runs backwards where `s1 < s0`.
@@ -158,20 +172,14 @@ impl Curve {
 
     /// Smallest box around the curve: `[lower left, upper right]`.
     pub fn bounds(&self) -> [Point; 2] {
-        let (a, b) = (self.start(), self.end());
-        let mut bounds = [[a[0].min(b[0]), a[1].min(b[1])], [a[0].max(b[0]), a[1].max(b[1])]];
+        let mut reached = vec![self.start(), self.end()];
         if let Curve::Arc { centre, radius, .. } = *self {
-            for (axis, sign) in [(0, -1.0), (0, 1.0), (1, -1.0), (1, 1.0)] {
-                let mut extreme = centre;
-                extreme[axis] += sign * radius;
-                let angle_free = self.project(extreme);
-                if angle_free > 0.0 && angle_free < 1.0 {
-                    let side = &mut bounds[usize::from(sign > 0.0)][axis];
-                    *side = if sign > 0.0 { side.max(extreme[axis]) } else { side.min(extreme[axis]) };
-                }
-            }
+            let extremes = [[radius, 0.0], [0.0, radius], [-radius, 0.0], [0.0, -radius]];
+            reached.extend(
+                extremes.map(|offset| point::add(centre, offset)).into_iter().filter(|&p| self.faces(p)),
+            );
         }
-        bounds
+        point::bounds(&reached)
     }
 
     /// Contribution of the curve to the area on its left: half the integral of `x dy - y dx`.

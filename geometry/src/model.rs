@@ -76,15 +76,11 @@ pub struct Geometry {
 const TOLERANCE: f64 = 1e-9;
 
 impl Geometry {
-    /// Smallest box around all finite curves: `[lower left, upper right]`; zero if there is none.
+    /// Smallest box around all finite curves: `[lower left, upper right]`; see [`point::bounds`].
     pub fn bounds(&self) -> [Point; 2] {
-        self.curves()
-            .filter(|curve| curve.is_finite())
-            .map(|curve| curve.bounds())
-            .reduce(|[al, ah], [bl, bh]| {
-                [[al[0].min(bl[0]), al[1].min(bl[1])], [ah[0].max(bh[0]), ah[1].max(bh[1])]]
-            })
-            .unwrap_or_default()
+        let boxes: Vec<[Point; 2]> =
+            self.curves().filter(|curve| curve.is_finite()).map(Curve::bounds).collect();
+        point::bounds(boxes.as_flattened())
     }
 
     /// Distance below which two points count as one.

@@ -30,7 +30,7 @@ pub fn cross(a: Point, b: Point) -> f64 {
 
 /// Euclidean length.
 pub fn norm(a: Point) -> f64 {
-    a[0].hypot(a[1])
+    dot(a, a).sqrt()
 }
 
 /// Distance between two points.
@@ -43,6 +43,11 @@ pub fn lerp(a: Point, b: Point, s: f64) -> Point {
     [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])]
 }
 
+/// Mean of the corners of a triangle.
+pub fn centroid([a, b, c]: [Point; 3]) -> Point {
+    scale(add(a, add(b, c)), 1.0 / 3.0)
+}
+
 /// The vector turned left by a right angle.
 pub fn left(a: Point) -> Point {
     [-a[1], a[0]]
@@ -51,4 +56,12 @@ pub fn left(a: Point) -> Point {
 /// Whether both coordinates are finite numbers.
 pub fn is_finite(a: Point) -> bool {
     a[0].is_finite() && a[1].is_finite()
+}
+
+/// Smallest box around points: `[lower left, upper right]`; infinite and inverted where there are none.
+pub fn bounds<'a>(points: impl IntoIterator<Item = &'a Point>) -> [Point; 2] {
+    let empty = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    points.into_iter().fold(empty, |[low, high], p| {
+        [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]]
+    })
 }

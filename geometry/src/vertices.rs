@@ -6,7 +6,7 @@ use crate::point::{self, Point};
 /// Distinct end points of a geometry's segments, in order of first appearance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vertices {
-    /// Position of each vertex; the first of the points merged into it.
+    /// Position of each vertex; the first of the points merged into it, with r = 0 exactly on the axis.
     pub points: Vec<Point>,
     /// `ends[path][segment]` = vertex at the segment's start and at its end.
     pub ends: Vec<Vec<[usize; 2]>>,
@@ -20,7 +20,8 @@ impl Vertices {
         let mut vertex = |p: Point| {
             let known = points.iter().position(|&q| point::distance(p, q) <= tolerance);
             known.unwrap_or_else(|| {
-                points.push(p);
+                let on_axis = geometry.axisymmetric && p[0].abs() <= tolerance;
+                points.push(if on_axis { [0.0, p[1]] } else { p });
                 points.len() - 1
             })
         };

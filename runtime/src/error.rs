@@ -1,0 +1,112 @@
+//! What can go wrong when a compiled model runs. Every variant says what, where in model terms, and what to do now.
+
+use std::fmt;
+use std::path::PathBuf;
+
+/// An error of a simulation.
+#[derive(Debug)]
+pub enum Error {
+    /// A parameter from outside does not exist, has the wrong unit or lies out of range; the text says which and what is allowed.
+    Parameter(String),
+    /// The geometry does not close, crosses itself or overlaps with these parameters.
+    Geometry(Vec<String>),
+    /// The mesh could not be made.
+    Mesh(String),
+    /// The model's text asks for something that does not fit the mesh, such as a path without edges.
+    Model(String),
+    /// The equations could not be solved.
+    Solve(Box<SolveError>),
+    /// A file or folder could not be written.
+    Output {
+        /// The file or folder.
+        path: PathBuf,
+        /// The system's word.
+        cause: String,
+    },
+}
+
+/// Why a solve failed, with the worst term and place.
+#[derive(Clone, Debug)]
+pub struct SolveError {
+    /// What happened.
+    pub cause: Cause,
+    /// Time [internal units].
+    pub time: f64,
+    /// Step size when it was given up.
+    pub step: f64,
+    /// Newton iterations of the last attempt.
+    pub iterations: usize,
+    /// Relative residual reached.
+    pub residual: f64,
+    /// The unknown with the largest residual, such as `u.z at (1.53, 0.02)`.
+    pub place: String,
+    /// Contributions of the physics blocks there, largest first.
+    pub terms: Vec<(String, f64)>,
+}
+
+/// Causes of a failed solve.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cause {
+    /// Newton's method used all its iterations, or its line search found no decrease.
+    NoConvergence,
+    /// The solution is unstable: the tangent has this many negative pivots.
+    Unstable(usize),
+    /// The matrix is singular at an unknown.
+    Singular(String),
+    /// A value became infinite or undefined, as when an element turns inside out.
+    NotFinite,
+    /// The small system of states has no solution; the text names the equation.
+    States(String),
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoConvergence => write!(f, "Newton's method did not converge"),
+            Self::Unstable(n) => write!(f, "the equilibrium found is unstable ({n} negative pivots)"),
+            Self::Singular(unknown) => write!(f, "the tangent is singular at {unknown}"),
+            Self::NotFinite => {
+                write!(f, "a value is not finite: an element has turned inside out or a law left its domain")
+            }
+            Self::States(equation) => write!(f, "the states could not be solved for: {equation}"),
+        }
+    }
+}
+
+impl fmt::Display for SolveError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{} at t = {:.6}, step {:.3e}", self.cause, self.time, self.step)?;
+        writeln!(f, "  {} iterations, relative residual {:.2e}", self.iterations, self.residual)?;
+        writeln!(f, "  largest residual: {}", self.place)?;
+        for (term, value) in &self.terms {
+            writeln!(f, "    {term:<40} {value:+.4e}")?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Parameter(text) | Self::Model(text) => f.write_str(text),
+            Self::Geometry(errors) => {
+                writeln!(f, "the geometry is not valid with these parameters:")?;
+                errors.iter().try_for_each(|e| writeln!(f, "  {e}"))
+            }
+            Self::Mesh(text) => write!(f, "the mesh could not be made: {text}"),
+            Self::Solve(error) => error.fmt(f),
+            Self::Output { path, cause } => {
+                write!(f, "cannot write `{}`: {cause}; choose another folder with --out", path.display())
+            }
+        }
+    }
+}
+
+impl std::error::Error for Error {}
+impl std::error::Error for SolveError {}
+
+impl From<SolveError> for Error {
+    fn from(error: SolveError) -> Self {
+        Self::Solve(Box::new(error))
+    }
+}

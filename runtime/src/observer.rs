@@ -1,0 +1,63 @@
+//! What a running simulation tells the outside: steps, events, table rows and field frames. Writers, progress bars and tests are observers.
+
+use crate::error::Error;
+use crate::mesh::Mesh;
+
+/// An accepted step.
+#[derive(Clone, Debug)]
+pub struct Step<'a> {
+    /// Number of the step, from 1.
+    pub number: usize,
+    /// Time at its end.
+    pub time: f64,
+    /// Its size.
+    pub size: f64,
+    /// Newton iterations it took, over all stages.
+    pub iterations: usize,
+    /// Globals at its end.
+    pub globals: &'a [f64],
+}
+
+/// An event that fired.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fired {
+    /// Index into the program's events.
+    pub event: usize,
+    /// When.
+    pub time: f64,
+}
+
+/// Node values of a field frame on the cells of its regions, shared with whoever writes it.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Index into the program's frames.
+    pub frame: usize,
+    /// Time.
+    pub time: f64,
+    /// Displacement of the mesh nodes if the model has a vector field of lengths on these regions (drawn deformed).
+    pub columns: Vec<Vec<f64>>,
+}
+
+/// Follows a run. Every method may stop the run by an error.
+pub trait Observer {
+    /// The mesh is ready.
+    fn begin(&mut self, _mesh: &Mesh) -> Result<(), Error> {
+        Ok(())
+    }
+    /// A step was accepted.
+    fn step(&mut self, _step: &Step<'_>) -> Result<(), Error> {
+        Ok(())
+    }
+    /// A table has a new row (display units).
+    fn row(&mut self, _table: usize, _values: &[f64]) -> Result<(), Error> {
+        Ok(())
+    }
+    /// A frame is due.
+    fn frame(&mut self, _frame: Frame) -> Result<(), Error> {
+        Ok(())
+    }
+    /// An event fired.
+    fn fired(&mut self, _event: &Fired) -> Result<(), Error> {
+        Ok(())
+    }
+}

@@ -1,0 +1,21 @@
+//! The results folder of a run: tables, field frames, pictures, plots and the summary `run.json`. Whatever is written is complete at
+//! any moment, so that a run that ends early leaves readable results.
+
+mod canvas;
+mod frames;
+mod plot;
+mod snapshot;
+mod summary;
+mod table;
+mod vtu;
+
+pub mod progress;
+pub mod results;
+
+use crate::error::Error;
+use std::path::Path;
+
+/// The error of a file that cannot be written.
+fn cannot_write(path: &Path, cause: &dyn std::fmt::Display) -> Error {
+    Error::Output { path: path.to_path_buf(), cause: cause.to_string() }
+}

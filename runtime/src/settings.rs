@@ -1,0 +1,115 @@
+//! Parameter values from outside: `NAME=VALUE`, such as `r_g="1.2 um"`, checked for name, unit and range.
+
+use crate::error::Error;
+use crate::generated::{Parameter, Program};
+use ansatz_units::{Dimension, Rational, nearest, parse_quantity};
+
+/// Values of all parameters in the model's units: those set, and defaults for the rest (defaults may depend on parameters before them).
+///
+/// # Errors
+/// [`Error::Parameter`] naming the parameter: unknown, not a quantity, of another dimension, out of its range.
+pub fn resolve(program: &Program, settings: &[(String, String)]) -> Result<Vec<f64>, Error> {
+    let mut given = vec![None; program.parameters.len()];
+    for (name, text) in settings {
+        let index = find(program, name)?;
+        given[index] = Some(value(program, &program.parameters[index], text)?);
+    }
+    let mut g = vec![0.0; program.layout.length];
+    let first = program.layout.parameters[0];
+    for (k, parameter) in program.parameters.iter().enumerate() {
+        g[first + k] = given[k].unwrap_or_else(|| (parameter.default)(&g));
+    }
+    let values = g[first..first + program.parameters.len()].to_vec();
+    check(program, &g, &values)?;
+    Ok(values)
+}
+
+/// Checks every value against its range or list.
+///
+/// # Errors
+/// [`Error::Parameter`] naming the first parameter that is out of range, and what is allowed.
+pub fn check(program: &Program, g: &[f64], values: &[f64]) -> Result<(), Error> {
+    for (parameter, &value) in program.parameters.iter().zip(values) {
+        let shown = |x: f64| format!("{} {}", display(x / parameter.unit_value), parameter.unit);
+        if let Some(choices) = (parameter.choices)(g) {
+            let close = |c: &f64| (c - value).abs() <= 1e-12 * c.abs();
+            if !choices.iter().any(close) {
+                let list: Vec<String> = choices.iter().map(|c| shown(*c)).collect();
+                let message =
+                    format!("`{}` = {} is not one of {}", parameter.name, shown(value), list.join(", "));
+                return Err(Error::Parameter(message));
+            }
+        }
+        let (low, high) = (parameter.range)(g);
+        if value.is_nan()
+            || value < low * (1.0 - low.signum() * 1e-12)
+            || value > high * (1.0 + high.signum() * 1e-12)
+        {
+            let allowed = format!("{} .. {}", shown(low), shown(high));
+            let message = format!("`{}` = {} is out of its range {allowed}", parameter.name, shown(value));
+            return Err(Error::Parameter(message));
+        }
+    }
+    Ok(())
+}
+
+/// Splits `NAME=VALUE`.
+///
+/// # Errors
+/// [`Error::Parameter`] when there is no `=`.
+pub fn split(setting: &str) -> Result<(String, String), Error> {
+    let message = || format!("`{setting}` is no setting: write NAME=VALUE, such as --set r=\"1.2 um\"");
+    let (name, value) = setting.split_once('=').ok_or_else(|| Error::Parameter(message()))?;
+    Ok((name.trim().into(), value.trim().into()))
+}
+
+/// A number as people write it: 12 significant digits at most.
+pub fn display(value: f64) -> String {
+    let rounded: f64 = format!("{value:.11e}").parse().unwrap_or(value);
+    if rounded == 0.0 || (1e-4..1e9).contains(&rounded.abs()) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+fn find(program: &Program, name: &str) -> Result<usize, Error> {
+    if let Some(index) = program.parameters.iter().position(|p| p.name == name) {
+        return Ok(index);
+    }
+    let names = program.parameters.iter().map(|p| p.name);
+    let hint = match nearest(name, names) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => String::from("--help lists them"),
+    };
+    Err(Error::Parameter(format!("the model `{}` has no parameter `{name}`; {hint}", program.name)))
+}
+
+fn value(program: &Program, parameter: &Parameter, text: &str) -> Result<f64, Error> {
+    let name = parameter.name;
+    let (si, dimension) =
+        parse_quantity(text).map_err(|e| Error::Parameter(format!("`{name}={text}` is no quantity: {e}")))?;
+    let wanted = dimension_of(parameter);
+    if dimension != wanted {
+        let unit = parameter.unit;
+        let message = format!(
+            "`{name}` is {} and needs a unit such as {unit}, but `{text}` is {}",
+            wanted.describe(),
+            dimension.describe()
+        );
+        return Err(Error::Parameter(message));
+    }
+    Ok(si / scale(program, wanted))
+}
+
+/// Dimension of a parameter.
+fn dimension_of(parameter: &Parameter) -> Dimension {
+    let exponent = |(n, d)| Rational::new(n, d).unwrap_or(Rational::ZERO);
+    Dimension::from_exponents(parameter.dimension.map(exponent))
+}
+
+/// SI value of one internal unit of a dimension.
+fn scale(program: &Program, dimension: Dimension) -> f64 {
+    let power = |(base, exponent): (f64, &Rational)| base.powf(exponent.to_f64());
+    program.base_scales.into_iter().zip(dimension.exponents()).map(power).product()
+}

@@ -1,0 +1,248 @@
+//! The balance of the fields: its residual, its tangent and the outer products of the functionals.
+
+use super::System;
+use super::newton::StageProblem;
+use super::states::Stage as StateStage;
+use super::terms::At;
+use super::unknowns::NONE;
+use crate::error::Cause;
+
+/// The linearised balance at one point: residual, matrix values (kept in the system) and one outer product b c^T for each functional.
+#[derive(Clone, Debug, Default)]
+pub struct Balance {
+    /// Residual per equation.
+    pub residual: Vec<f64>,
+    /// Columns b, one after another.
+    pub b: Vec<f64>,
+    /// Columns c = grad Z, one after another.
+    pub c: Vec<f64>,
+}
+
+impl System {
+    /// Evaluates the functionals at y and writes them into y and the globals.
+    pub(super) fn evaluate_functionals(&mut self, y: &mut [f64], rates: &[f64]) {
+        let first = self.program.layout.functionals[0];
+        for (k, functional) in self.functionals.iter_mut().enumerate() {
+            let at = At { y, rates, g: &self.g, alpha: 0.0 };
+            let value = functional.value(&self.mesh, &self.unknowns, at);
+            y[self.unknowns.functionals + k] = value;
+            self.g[first + k] = value;
+        }
+    }
+
+    /// Brings everything scalar in line with the field unknowns in y: rates, functionals, states and their places in y and the globals.
+    pub(super) fn settle(
+        &mut self,
+        problem: &StageProblem<'_>,
+        y: &mut [f64],
+        rates: &mut [f64],
+    ) -> Result<(), Cause> {
+        let layout = self.program.layout;
+        self.g[layout.time] = problem.time;
+        problem.rates(y, rates, 0..self.unknowns.states);
+        self.evaluate_functionals(y, rates);
+        problem.rates(y, rates, self.unknowns.functionals..self.unknowns.length);
+        for k in 0..self.functionals.len() {
+            self.g[layout.functional_rates[0] + k] = rates[self.unknowns.functionals + k];
+        }
+        let states = self.unknowns.states..self.unknowns.functionals;
+        self.g[layout.states[0]..layout.states[1]].copy_from_slice(&y[states.clone()]);
+        if let Some(solver) = &mut self.states {
+            let stage = StateStage { alpha: problem.alpha, base: &problem.base[states.clone()] };
+            solver.solve(&mut self.g, stage).map_err(|place| Cause::States(place.into()))?;
+        }
+        y[states.clone()].copy_from_slice(&self.g[layout.states[0]..layout.states[1]]);
+        problem.rates(y, rates, states);
+        Ok(())
+    }
+
+    /// Coefficient of each coupling at the present globals.
+    fn coefficients(&self) -> Vec<f64> {
+        self.program.couplings.as_ref().map_or(Vec::new(), |couplings| {
+            let mut out = vec![0.0; couplings.terms.len()];
+            (couplings.coefficients)(&self.g, &mut out);
+            out
+        })
+    }
+
+    /// Residual of all field unknowns (held ones included: there it is minus the reaction), of one physics block or of all.
+    pub(super) fn unknown_residual(
+        &mut self,
+        at_y: &[f64],
+        rates: &[f64],
+        alpha: f64,
+        block: Option<usize>,
+    ) -> Vec<f64> {
+        let mut residual = vec![0.0; self.unknowns.length];
+        let wanted = |b: usize| block.is_none_or(|only| only == b);
+        let coefficients = self.coefficients();
+        let at = At { y: at_y, rates, g: &self.g, alpha };
+        for term in self.terms.iter_mut().filter(|t| wanted(t.integral.block)) {
+            term.add_residual(at, 1.0, &mut residual);
+        }
+        for pair in &mut self.pairs {
+            pair.update(&self.mesh, &self.unknowns, at_y);
+            pair.add_residual(&self.unknowns, &self.g, &wanted, &mut residual);
+        }
+        if let Some(couplings) = &self.program.couplings {
+            for (term, c) in couplings.terms.iter().zip(coefficients) {
+                if wanted(term.block) {
+                    let functional = &mut self.functionals[term.functional];
+                    functional.evaluate_gradient(&self.mesh, &self.unknowns, at);
+                    add(&mut residual, c, &functional.gradient);
+                }
+            }
+        }
+        residual
+    }
+
+    /// Size of the element forces that balance each other: the scale against which a residual is small.
+    pub(super) fn force_scale(&mut self, y: &[f64], rates: &[f64], alpha: f64) -> f64 {
+        let mut magnitude = vec![0.0; self.unknowns.length];
+        let at = At { y, rates, g: &self.g, alpha };
+        self.terms.iter_mut().for_each(|t| t.add_magnitude(at, &mut magnitude));
+        norm(&self.restrict(&magnitude))
+    }
+
+    /// Linearises the balance at a settled point; matrix values go to `self.values`.
+    pub(super) fn linearise(&mut self, y: &[f64], rates: &[f64], alpha: f64) -> Balance {
+        let mut residual = vec![0.0; self.unknowns.length];
+        self.values.fill(0.0);
+        let coefficients = self.coefficients();
+        let at = At { y, rates, g: &self.g, alpha };
+        for term in &mut self.terms {
+            term.add_tangent(at, 1.0, &mut residual, &mut self.values);
+        }
+        for pair in &mut self.pairs {
+            pair.update(&self.mesh, &self.unknowns, y);
+            let matrix = (&self.pattern, &self.equations[..]);
+            pair.add_tangent(&self.unknowns, &self.g, matrix, &mut residual, &mut self.values);
+        }
+        for functional in &mut self.functionals {
+            functional.evaluate_gradient(&self.mesh, &self.unknowns, at);
+        }
+        if let Some(couplings) = &self.program.couplings {
+            let mut unused = vec![0.0; residual.len()];
+            for (term, c) in couplings.terms.iter().zip(&coefficients) {
+                let functional = &mut self.functionals[term.functional];
+                add(&mut residual, *c, &functional.gradient);
+                functional.add_curvature(at, *c, &mut self.values, &mut unused);
+            }
+        }
+        let (b, c) = self.outer_products(y, rates, alpha);
+        Balance { residual: self.restrict(&residual), b, c }
+    }
+
+    /// Columns b_j and c_j = grad Z_j of the functionals.
+    fn outer_products(&mut self, y: &[f64], rates: &[f64], alpha: f64) -> (Vec<f64>, Vec<f64>) {
+        let count = self.functionals.len();
+        let states = self.program.states.len();
+        let mut of_states = vec![0.0; states * count];
+        if let Some(solver) = &mut self.states {
+            solver.sensitivity(&self.g, alpha, &mut of_states);
+        }
+        let mut columns = vec![vec![0.0; self.unknowns.length]; count];
+        if let Some(couplings) = &self.program.couplings {
+            let width = states + count;
+            let mut derivatives = vec![0.0; couplings.terms.len() * width];
+            (couplings.derivatives)(&self.g, alpha, &mut derivatives);
+            for (term, row) in couplings.terms.iter().zip(derivatives.chunks(width)) {
+                let gradient = &self.functionals[term.functional].gradient;
+                for (j, column) in columns.iter_mut().enumerate() {
+                    let through_states: f64 = (0..states).map(|s| row[s] * of_states[s * count + j]).sum();
+                    add(column, row[states + j] + through_states, gradient);
+                }
+            }
+        }
+        self.add_global_tangents(y, rates, alpha, &of_states, &mut columns);
+        let b = columns.iter().flat_map(|column| self.restrict(column)).collect();
+        let c = self.functionals.iter().flat_map(|f| self.restrict(&f.gradient)).collect();
+        (b, c)
+    }
+
+    /// Integrals that read states or functionals: their share of the columns b_j.
+    fn add_global_tangents(
+        &mut self,
+        y: &[f64],
+        rates: &[f64],
+        alpha: f64,
+        of_states: &[f64],
+        columns: &mut [Vec<f64>],
+    ) {
+        let layout = self.program.layout;
+        let count = columns.len();
+        let at = At { y, rates, g: &self.g, alpha };
+        for term in &mut self.terms {
+            let Some(tangent) = &term.integral.global_tangent else { continue };
+            let mut by_slot = vec![vec![0.0; y.len()]; tangent.slots.len()];
+            term.add_global_tangent(at, tangent, &mut by_slot);
+            for (slot, by) in tangent.slots.iter().zip(&by_slot) {
+                for (j, column) in columns.iter_mut().enumerate() {
+                    let factor = if *slot >= layout.functionals[0] {
+                        f64::from(u8::from(slot - layout.functionals[0] == j))
+                    } else {
+                        of_states[(slot - layout.states[0]) * count + j]
+                    };
+                    add(column, factor, by);
+                }
+            }
+        }
+    }
+
+    /// Entries of a vector over unknowns that have an equation, in the equations' order.
+    pub(super) fn restrict(&self, full: &[f64]) -> Vec<f64> {
+        self.free.iter().map(|&u| full[u as usize]).collect()
+    }
+
+    /// Name of an equation's unknown and its place, such as `u.z at (1.53, 0.02)`.
+    pub(super) fn name_equation(&self, equation: usize) -> String {
+        let unknown = self.free.get(equation).copied().unwrap_or(NONE) as usize;
+        let (field, component, node) = self.unknowns.describe(unknown);
+        let x = self.mesh.nodes[node];
+        let field = &self.program.fields[field];
+        let suffix = field.component_names.get(component).map_or(String::new(), |n| format!(".{n}"));
+        format!("{}{suffix} at ({:.4}, {:.4})", field.name, x[0], x[1])
+    }
+
+    /// All globals, observables included, at given unknowns and rates.
+    pub fn observe(&mut self, time: f64, y: &[f64], rates: &[f64]) -> Vec<f64> {
+        let layout = self.program.layout;
+        let (states, functionals) = (self.unknowns.states, self.unknowns.functionals);
+        self.g[layout.time] = time;
+        self.g[layout.states[0]..layout.states[1]].copy_from_slice(&y[states..functionals]);
+        self.g[layout.state_rates[0]..layout.state_rates[1]].copy_from_slice(&rates[states..functionals]);
+        self.g[layout.functionals[0]..layout.functionals[1]].copy_from_slice(&y[functionals..]);
+        self.g[layout.functional_rates[0]..layout.functional_rates[1]].copy_from_slice(&rates[functionals..]);
+        for pair in &mut self.pairs {
+            pair.update(&self.mesh, &self.unknowns, y);
+        }
+        let mut observables = std::mem::take(&mut self.observables);
+        for (k, observable) in observables.iter_mut().enumerate() {
+            let value = self.evaluate_observable(observable, y, rates);
+            self.g[layout.observables[0] + k] = value;
+        }
+        self.observables = observables;
+        self.g.clone()
+    }
+
+    fn evaluate_observable(&mut self, observable: &mut super::ObservableOn, y: &[f64], rates: &[f64]) -> f64 {
+        if let super::ObservableOn::Force { block, unknowns } = observable {
+            let residual = self.unknown_residual(y, rates, 0.0, Some(*block));
+            return -unknowns.iter().map(|&u| residual[u]).sum::<f64>();
+        }
+        let at = At { y, rates, g: &self.g, alpha: 0.0 };
+        observable.evaluate(&self.mesh, &self.unknowns, &self.pairs, at)
+    }
+}
+
+/// `sum += factor * vector`, skipping a zero factor.
+fn add(sum: &mut [f64], factor: f64, vector: &[f64]) {
+    if factor != 0.0 {
+        sum.iter_mut().zip(vector).for_each(|(s, v)| *s += factor * v);
+    }
+}
+
+/// Euclidean norm.
+pub fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|v| v * v).sum::<f64>().sqrt()
+}

@@ -1,0 +1,166 @@
+//! The discretised model: everything of a compiled program on one mesh with one set of parameters.
+//!
+//! y = (field unknowns, states, functionals). Given the field unknowns, functionals are evaluated and the states solved for exactly; what Newton's
+//! method sees is the balance of the fields alone, whose tangent is the sparse matrix of the integrals plus a few outer products, one
+//! for each functional:
+//! K + sum_j b_j (grad Z_j)^T, with b_j = sum_k (d c_k / d Z_j) grad Z_k + d R / d (states) . d (states) / d Z_j.
+
+mod balance;
+mod contact;
+mod elements;
+mod frames;
+mod functionals;
+mod globals;
+mod newton;
+mod observables;
+mod point;
+mod start;
+mod states;
+mod terms;
+mod unknowns;
+
+pub use balance::Balance;
+pub use frames::FrameSampler;
+pub use newton::{NewtonReport, StageProblem};
+pub use point::{Place, Sampler, node_places};
+pub use terms::At;
+pub use unknowns::{FieldNumbers, Unknowns, domain_nodes, region_cells};
+
+use crate::error::Error;
+use crate::generated::{Program, Solve};
+use crate::mesh::Mesh;
+use crate::solve::border::BorderedSolver;
+use crate::solve::sparse::{MatrixKind, SparsePattern};
+use contact::PairOn;
+use functionals::FunctionalOn;
+use observables::ObservableOn;
+use start::HeldUnknown;
+use states::StateSolver;
+use terms::Term;
+use unknowns::NONE;
+
+/// A compiled model on a mesh.
+pub struct System {
+    /// The compiled model.
+    pub program: &'static Program,
+    /// The mesh.
+    pub mesh: Mesh,
+    /// Numbering of y.
+    pub unknowns: Unknowns,
+    /// Settings of the solution.
+    pub settings: Solve,
+    /// Globals as of the last evaluation.
+    pub g: Vec<f64>,
+    held: Vec<HeldUnknown>,
+    /// Equation of each field unknown, or [`NONE`] where it is held.
+    equations: Vec<u32>,
+    /// Unknown of each equation.
+    free: Vec<u32>,
+    terms: Vec<Term>,
+    functionals: Vec<FunctionalOn>,
+    pairs: Vec<PairOn>,
+    observables: Vec<ObservableOn>,
+    states: Option<StateSolver>,
+    kind: MatrixKind,
+    pattern: SparsePattern,
+    solver: BorderedSolver,
+    /// Matrix values and one spare entry for what belongs to held unknowns.
+    values: Vec<f64>,
+    /// The last factorisation met negative pivots: the next one starts with the indefinite method.
+    indefinite: bool,
+}
+
+impl System {
+    /// Puts a program with these parameters on a mesh.
+    pub fn new(program: &'static Program, parameters: &[f64], mesh: Mesh) -> Result<Self, Error> {
+        let unknowns = Unknowns::new(program, &mesh)?;
+        let g = globals::constants(program, parameters, &mesh)?;
+        let held = start::held_unknowns(program, &mesh, &unknowns)?;
+        let (equations, free) = start::number_equations(&unknowns, &held);
+        let terms: Vec<Term> =
+            program.integrals.iter().map(|i| Term::new(i, &mesh, &unknowns)).collect::<Result<_, _>>()?;
+        let functionals: Vec<FunctionalOn> = program
+            .functionals
+            .iter()
+            .map(|f| FunctionalOn::new(f, &mesh, &unknowns, &g))
+            .collect::<Result<_, _>>()?;
+        let pairs = contact::prepare(program, &mesh, &g)?;
+        let observables = observables::prepare(program, &mesh, &unknowns, &g)?;
+        let curved = functionals.iter().flat_map(|f| f.terms()).filter(|t| t.integral.tangent.is_some());
+        let symmetric = terms.iter().chain(curved).all(|t| t.integral.symmetric);
+        let kind = if symmetric { MatrixKind::Symmetric } else { MatrixKind::Unsymmetric };
+        let pattern = SparsePattern::from_elements(free.len(), kind, []);
+        let solver = analyse(&pattern, functionals.len())?;
+        let states = program.state_system.as_ref().map(|system| {
+            let bounds = program.states.iter().map(|s| (s.bounds)(&g)).collect();
+            StateSolver::new(system, program.layout, bounds)
+        });
+        let mut system = Self {
+            program,
+            settings: (program.solve)(&g),
+            mesh,
+            unknowns,
+            g,
+            held,
+            equations,
+            free,
+            terms,
+            functionals,
+            pairs,
+            observables,
+            states,
+            kind,
+            pattern,
+            solver,
+            values: Vec::new(),
+            indefinite: false,
+        };
+        let y = vec![0.0; system.unknowns.length];
+        system.rebuild_pattern(&y)?;
+        Ok(system)
+    }
+
+    /// Number of equations that the sparse solver sees.
+    pub fn equation_count(&self) -> usize {
+        self.free.len()
+    }
+
+    /// Stored entries of the matrix.
+    pub fn matrix_entries(&self) -> usize {
+        self.pattern.entries()
+    }
+
+    /// Collects who couples to whom at `y` and analyses the matrix anew.
+    fn rebuild_pattern(&mut self, y: &[f64]) -> Result<(), Error> {
+        let mut groups: Vec<Vec<u32>> = Vec::new();
+        let curved = self.functionals.iter().flat_map(|f| f.terms()).filter(|t| t.integral.tangent.is_some());
+        for term in self.terms.iter().chain(curved) {
+            groups.extend(term.elements.element_unknowns());
+        }
+        for pair in &mut self.pairs {
+            pair.update(&self.mesh, &self.unknowns, y);
+            groups.extend(pair.couplings(&self.unknowns));
+        }
+        for group in &mut groups {
+            group.iter_mut().for_each(|u| *u = self.equations[*u as usize]);
+            group.retain(|&equation| equation != NONE);
+        }
+        self.pattern =
+            SparsePattern::from_elements(self.free.len(), self.kind, groups.iter().map(Vec::as_slice));
+        self.solver = analyse(&self.pattern, self.functionals.len())?;
+        self.values = vec![0.0; self.pattern.entries() + 1];
+        for term in &mut self.terms {
+            term.locate(&self.pattern, &self.equations);
+        }
+        for term in self.functionals.iter_mut().flat_map(|f| f.terms_mut()) {
+            if term.integral.tangent.is_some() {
+                term.locate(&self.pattern, &self.equations);
+            }
+        }
+        Ok(())
+    }
+}
+
+fn analyse(pattern: &SparsePattern, borders: usize) -> Result<BorderedSolver, Error> {
+    BorderedSolver::new(pattern, borders).map_err(|e| Error::Model(e.to_string()))
+}

@@ -1,0 +1,219 @@
+//! Newton's method for one implicit stage of the time integrator.
+
+use super::System;
+use super::balance::{Balance, norm};
+use crate::error::{Cause, SolveError};
+use crate::solve::linear::{Definiteness, LinearError};
+use std::ops::Range;
+
+/// Most halvings of a step of the line search.
+const HALVINGS: usize = 8;
+/// The line search accepts a step when |du . R| falls below this part of its start.
+const DECREASE: f64 = 0.9;
+
+/// One implicit stage: find y with F(t, y, alpha (y - base)) = 0.
+#[derive(Clone, Copy, Debug)]
+pub struct StageProblem<'a> {
+    /// Time of the stage.
+    pub time: f64,
+    /// d rate / d value [1/time]; 0 for a stationary problem.
+    pub alpha: f64,
+    /// Base of the rates, all unknowns.
+    pub base: &'a [f64],
+}
+
+impl StageProblem<'_> {
+    /// Rates of a range of unknowns.
+    pub fn rates(&self, y: &[f64], rates: &mut [f64], range: Range<usize>) {
+        for i in range {
+            rates[i] = self.alpha * (y[i] - self.base[i]);
+        }
+    }
+}
+
+/// How a stage was solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct NewtonReport {
+    /// Iterations, one factorisation each.
+    pub iterations: usize,
+    /// Relative residual at the end.
+    pub residual: f64,
+    /// Negative pivots of the last tangent: 0 on a stable branch.
+    pub negative_pivots: usize,
+}
+
+/// A point on the way: unknowns, rates and residual that belong together.
+struct Iterate {
+    y: Vec<f64>,
+    rates: Vec<f64>,
+    residual: Vec<f64>,
+}
+
+impl System {
+    /// Solves one stage; `y` is the prediction on entry and the solution on return.
+    pub fn solve_stage(
+        &mut self,
+        problem: &StageProblem<'_>,
+        y: &mut [f64],
+    ) -> Result<NewtonReport, SolveError> {
+        let mut start = y.to_vec();
+        self.apply_holds(problem.time, &mut start);
+        let mut report = NewtonReport::default();
+        let mut current = match self.evaluate(problem, start) {
+            Ok(iterate) => iterate,
+            Err(cause) => return Err(self.failure(problem, cause, &report, None)),
+        };
+        while report.iterations < self.settings.newton_iterations {
+            match self.iterate(problem, &mut current, &mut report) {
+                Ok(false) => {}
+                Ok(true) => {
+                    y.copy_from_slice(&current.y);
+                    return Ok(report);
+                }
+                Err(cause) => return Err(self.failure(problem, cause, &report, Some(&current))),
+            }
+        }
+        Err(self.failure(problem, Cause::NoConvergence, &report, Some(&current)))
+    }
+
+    /// One iteration; true when converged.
+    fn iterate(
+        &mut self,
+        problem: &StageProblem<'_>,
+        current: &mut Iterate,
+        report: &mut NewtonReport,
+    ) -> Result<bool, Cause> {
+        let (balance, direction) = self.direction(problem, current, report)?;
+        report.iterations += 1;
+        let slope = dot(&direction, &balance.residual).abs();
+        *current = self.search(problem, current, &direction, slope)?;
+        let scale = self.force_scale(&current.y, &current.rates, problem.alpha);
+        let size = norm(&current.residual);
+        report.residual = if scale > 0.0 { size / scale } else { size };
+        Ok(size <= self.settings.newton_tolerance * scale || size < f64::MIN_POSITIVE.sqrt())
+    }
+
+    /// Newton direction at the current iterate.
+    fn direction(
+        &mut self,
+        problem: &StageProblem<'_>,
+        current: &Iterate,
+        report: &mut NewtonReport,
+    ) -> Result<(Balance, Vec<f64>), Cause> {
+        let mut balance = self.linearise(&current.y, &current.rates, problem.alpha);
+        if self.pairs.iter().any(|pair| !pair.covered()) {
+            self.rebuild_pattern(&current.y).map_err(|e| Cause::Singular(e.to_string()))?;
+            balance = self.linearise(&current.y, &current.rates, problem.alpha);
+        }
+        let entries = self.pattern.entries();
+        let expected = if self.indefinite { Definiteness::Indefinite } else { Definiteness::Positive };
+        let factors = self
+            .solver
+            .factor_low_rank(&self.values[..entries], &balance.b, Some(&balance.c), expected)
+            .map_err(|e| self.matrix_failure(e))?;
+        report.negative_pivots = factors.negative_pivots.unwrap_or(0);
+        self.indefinite = report.negative_pivots > 0;
+        let mut direction: Vec<f64> = balance.residual.iter().map(|r| -r).collect();
+        let mut border = vec![0.0; self.functionals.len()];
+        self.solver.solve(&mut direction, &mut border).map_err(|e| self.matrix_failure(e))?;
+        Ok((balance, direction))
+    }
+
+    /// Goes along the direction as far as |du . R| falls.
+    fn search(
+        &mut self,
+        problem: &StageProblem<'_>,
+        current: &Iterate,
+        direction: &[f64],
+        slope: f64,
+    ) -> Result<Iterate, Cause> {
+        let mut length = 1.0;
+        let mut best: Option<(f64, Iterate)> = None;
+        let mut cause = Cause::NotFinite;
+        for _ in 0..=HALVINGS {
+            let mut y = current.y.clone();
+            for (&unknown, d) in self.free.iter().zip(direction) {
+                y[unknown as usize] += length * d;
+            }
+            match self.evaluate(problem, y) {
+                Ok(trial) => {
+                    let work = dot(direction, &trial.residual).abs();
+                    let smaller = norm(&trial.residual) <= norm(&current.residual) * 1e-3;
+                    if work <= DECREASE * slope || smaller {
+                        return Ok(trial);
+                    }
+                    if best.as_ref().is_none_or(|(least, _)| work < *least) {
+                        best = Some((work, trial));
+                    }
+                }
+                Err(reason) => cause = reason,
+            }
+            length *= 0.5;
+        }
+        best.map(|(_, iterate)| iterate).ok_or(cause)
+    }
+
+    /// Settles the scalars and assembles the residual at y.
+    fn evaluate(&mut self, problem: &StageProblem<'_>, mut y: Vec<f64>) -> Result<Iterate, Cause> {
+        let mut rates = vec![0.0; y.len()];
+        self.settle(problem, &mut y, &mut rates)?;
+        let full = self.unknown_residual(&y, &rates, problem.alpha, None);
+        let residual = self.restrict(&full);
+        if residual.iter().any(|r| !r.is_finite()) {
+            return Err(Cause::NotFinite);
+        }
+        Ok(Iterate { y, rates, residual })
+    }
+
+    fn matrix_failure(&self, error: LinearError) -> Cause {
+        let named = |equation| Cause::Singular(self.name_equation(equation));
+        match error {
+            LinearError::Singular { equation }
+            | LinearError::EmptyRow { equation }
+            | LinearError::EmptyColumn { equation } => named(equation),
+            LinearError::NonFiniteEntry { .. } | LinearError::NonFiniteRightHandSide { .. } => {
+                Cause::NotFinite
+            }
+            other => Cause::Singular(other.to_string()),
+        }
+    }
+
+    /// Describes a failed solve: the largest residual, where it is and which physics blocks make it up.
+    fn failure(
+        &mut self,
+        problem: &StageProblem<'_>,
+        cause: Cause,
+        report: &NewtonReport,
+        last: Option<&Iterate>,
+    ) -> SolveError {
+        let mut error = SolveError {
+            cause,
+            time: problem.time,
+            step: 0.0,
+            iterations: report.iterations,
+            residual: report.residual,
+            place: String::from("unknown: not even the first residual could be evaluated"),
+            terms: Vec::new(),
+        };
+        let Some(last) = last else { return error };
+        let magnitude = |i: &usize| last.residual[*i].abs();
+        let Some(worst) = (0..last.residual.len()).max_by(|a, b| magnitude(a).total_cmp(&magnitude(b)))
+        else {
+            return error;
+        };
+        error.place = self.name_equation(worst);
+        let unknown = self.free[worst] as usize;
+        for (block, name) in self.program.blocks.iter().enumerate() {
+            let residual = self.unknown_residual(&last.y, &last.rates, problem.alpha, Some(block));
+            if residual[unknown] != 0.0 {
+                error.terms.push(((*name).into(), residual[unknown]));
+            }
+        }
+        error.terms.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+        error
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}

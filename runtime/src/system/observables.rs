@@ -1,0 +1,103 @@
+//! Scalars for outputs and events, evaluated after a step.
+
+use super::contact::PairOn;
+use super::point::{Place, Sampler, locate, node_places};
+use super::terms::{At, Term};
+use super::unknowns::{Unknowns, domain_nodes};
+use crate::error::Error;
+use crate::generated::{Observable, ObservableKind, Program};
+use crate::mesh::Mesh;
+
+/// An observable on a mesh.
+pub enum ObservableOn {
+    /// Sum of integrals.
+    Integrals(Vec<Term>),
+    /// Smallest (sign 1) or largest (sign -1) of sampled values.
+    Extreme {
+        /// 1 for the smallest, -1 for the largest.
+        sign: f64,
+        /// Function.
+        sampler: Sampler,
+        /// Where it is sampled.
+        places: Vec<Place>,
+    },
+    /// Smallest (sign 1) or largest (sign -1) f(gap) of a pair.
+    Gap {
+        /// 1 for the smallest, -1 for the largest.
+        sign: f64,
+        /// Pair.
+        pair: usize,
+        /// f.
+        function: fn(f64, &[f64]) -> f64,
+    },
+    /// Minus the sum of a block's residual over unknowns.
+    Force {
+        /// Physics block.
+        block: usize,
+        /// Unknowns.
+        unknowns: Vec<usize>,
+    },
+}
+
+impl ObservableOn {
+    /// Prepares an observable.
+    pub fn new(
+        observable: &'static Observable,
+        mesh: &Mesh,
+        unknowns: &Unknowns,
+        g: &[f64],
+    ) -> Result<Self, Error> {
+        let extreme =
+            |sign, function, places| Self::Extreme { sign, sampler: Sampler::new(function, mesh), places };
+        Ok(match &observable.kind {
+            ObservableKind::Integral(integrals) => Self::Integrals(
+                integrals.iter().map(|i| Term::new(i, mesh, unknowns)).collect::<Result<_, _>>()?,
+            ),
+            ObservableKind::Min(domain, function) => extreme(1.0, function, node_places(mesh, *domain)?),
+            ObservableKind::Max(domain, function) => extreme(-1.0, function, node_places(mesh, *domain)?),
+            ObservableKind::Point(at, function) => extreme(1.0, function, vec![locate(mesh, at(g))?]),
+            ObservableKind::PairMin(pair, function) => {
+                Self::Gap { sign: 1.0, pair: *pair, function: *function }
+            }
+            ObservableKind::PairMax(pair, function) => {
+                Self::Gap { sign: -1.0, pair: *pair, function: *function }
+            }
+            ObservableKind::Force { block, domain, field, component } => {
+                let nodes = domain_nodes(mesh, *domain)?;
+                let unknown = |node: u32| unknowns.fields[*field].unknown(node as usize, *component);
+                Self::Force { block: *block, unknowns: nodes.into_iter().filter_map(unknown).collect() }
+            }
+        })
+    }
+
+    /// Its value, except for a force, whose residual the system assembles.
+    pub fn evaluate(&mut self, mesh: &Mesh, unknowns: &Unknowns, pairs: &[PairOn], at: At<'_>) -> f64 {
+        match self {
+            Self::Integrals(terms) => terms.iter_mut().map(|t| t.value(at)).sum(),
+            Self::Extreme { sign, sampler, places } => {
+                let mut best = f64::INFINITY;
+                let mut out = vec![0.0; sampler.outputs()];
+                for place in places.iter() {
+                    sampler.evaluate(mesh, unknowns, place, at, &mut out);
+                    best = best.min(*sign * out[0]);
+                }
+                *sign * best
+            }
+            Self::Gap { sign, pair, function } => {
+                let gaps = pairs[*pair].gaps();
+                *sign * gaps.map(|gap| *sign * function(gap, at.g)).fold(f64::INFINITY, f64::min)
+            }
+            Self::Force { .. } => f64::NAN,
+        }
+    }
+}
+
+/// Observables of a program on a mesh.
+pub fn prepare(
+    program: &Program,
+    mesh: &Mesh,
+    unknowns: &Unknowns,
+    g: &[f64],
+) -> Result<Vec<ObservableOn>, Error> {
+    program.observables.iter().map(|o| ObservableOn::new(o, mesh, unknowns, g)).collect()
+}

@@ -1,0 +1,179 @@
+//! Integrals over elements: their residual, tangent and value, added through precomputed positions.
+
+use super::elements::{Elements, Gathered, Row};
+use super::unknowns::{NONE, Unknowns};
+use crate::error::Error;
+use crate::generated::{BATCH, GlobalTangent, Integral};
+use crate::mesh::Mesh;
+use crate::solve::sparse::{MatrixKind, SparsePattern};
+
+/// Where everything is evaluated: unknowns, their rates, globals, and d rate / d value.
+#[derive(Clone, Copy)]
+pub struct At<'a> {
+    /// Unknowns y.
+    pub y: &'a [f64],
+    /// Their time derivatives.
+    pub rates: &'a [f64],
+    /// Globals.
+    pub g: &'a [f64],
+    /// d rate / d value of the time integrator [1/time].
+    pub alpha: f64,
+}
+
+/// An integral on the elements of its domain.
+pub struct Term {
+    /// The emitted integral.
+    pub integral: &'static Integral,
+    /// Its elements.
+    pub elements: Elements,
+    /// Place in the matrix values of each tangent row and lane.
+    positions: Vec<[u32; BATCH]>,
+    /// Place of the transposed entry, where a symmetric tangent goes into an unsymmetric matrix.
+    mirrored: Vec<[u32; BATCH]>,
+    gathered: Gathered,
+    out: Vec<Row>,
+}
+
+impl Term {
+    /// Collects the elements of an integral.
+    pub fn new(integral: &'static Integral, mesh: &Mesh, unknowns: &Unknowns) -> Result<Self, Error> {
+        let elements = Elements::new(mesh, unknowns, integral.domain, integral.uses)?;
+        let rows = elements.local() + tangent_rows(integral.symmetric, elements.local());
+        let out = vec![[0.0; BATCH]; rows.max(1)];
+        Ok(Self {
+            integral,
+            elements,
+            positions: Vec::new(),
+            mirrored: Vec::new(),
+            gathered: Gathered::default(),
+            out,
+        })
+    }
+
+    /// Looks up where the tangent goes; entries of held unknowns go to the spare last value.
+    pub fn locate(&mut self, pattern: &SparsePattern, equations: &[u32]) {
+        let spare = pattern.entries() as u32;
+        let n = self.elements.local();
+        let mirror = self.integral.symmetric && pattern.kind() == MatrixKind::Unsymmetric;
+        self.positions.clear();
+        self.mirrored.clear();
+        let place = |a: u32, b: u32| {
+            let (row, column) = (equations[a as usize], equations[b as usize]);
+            let free = row != NONE && column != NONE;
+            free.then(|| pattern.position(row, column)).flatten().map_or(spare, |p| p as u32)
+        };
+        for batch in 0..self.elements.batches() {
+            let unknowns = self.elements.unknowns(batch);
+            for i in 0..n {
+                let columns = if self.integral.symmetric { i + 1 } else { n };
+                for j in 0..columns {
+                    self.positions.push(std::array::from_fn(|l| place(unknowns[i][l], unknowns[j][l])));
+                    if mirror {
+                        let transposed =
+                            |l| if i == j { spare } else { place(unknowns[j][l], unknowns[i][l]) };
+                        self.mirrored.push(std::array::from_fn(transposed));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Value of the integral; 0 if the integrand has none.
+    pub fn value(&mut self, at: At<'_>) -> f64 {
+        let Some(kernel) = self.integral.value else { return 0.0 };
+        let mut sum = 0.0;
+        for batch in 0..self.elements.batches() {
+            let elements = self.elements.gather(batch, at.y, at.rates, at.alpha, &mut self.gathered);
+            kernel(&elements, at.g, &mut self.out[..1]);
+            sum += self.out[0][..self.elements.count(batch)].iter().sum::<f64>();
+        }
+        sum
+    }
+
+    /// Adds `factor` times the residual to `residual` (all unknowns).
+    pub fn add_residual(&mut self, at: At<'_>, factor: f64, residual: &mut [f64]) {
+        let n = self.elements.local();
+        for batch in 0..self.elements.batches() {
+            let elements = self.elements.gather(batch, at.y, at.rates, at.alpha, &mut self.gathered);
+            (self.integral.residual)(&elements, at.g, &mut self.out[..n]);
+            scatter_rows(&self.elements, batch, &self.out[..n], factor, residual);
+        }
+    }
+
+    /// Adds the magnitudes of the element residuals: the size of the forces that balance.
+    pub fn add_magnitude(&mut self, at: At<'_>, magnitude: &mut [f64]) {
+        let n = self.elements.local();
+        for batch in 0..self.elements.batches() {
+            let elements = self.elements.gather(batch, at.y, at.rates, at.alpha, &mut self.gathered);
+            (self.integral.residual)(&elements, at.g, &mut self.out[..n]);
+            self.out[..n].iter_mut().flatten().for_each(|x| *x = x.abs());
+            scatter_rows(&self.elements, batch, &self.out[..n], 1.0, magnitude);
+        }
+    }
+
+    /// Adds `factor` times the residual and the tangent. `values` has one spare entry at its end.
+    pub fn add_tangent(&mut self, at: At<'_>, factor: f64, residual: &mut [f64], values: &mut [f64]) {
+        let Some(kernel) = self.integral.tangent else {
+            return self.add_residual(at, factor, residual);
+        };
+        let n = self.elements.local();
+        let rows = tangent_rows(self.integral.symmetric, n);
+        for batch in 0..self.elements.batches() {
+            let elements = self.elements.gather(batch, at.y, at.rates, at.alpha, &mut self.gathered);
+            kernel(&elements, at.g, &mut self.out[..n + rows]);
+            scatter_rows(&self.elements, batch, &self.out[..n], factor, residual);
+            let count = self.elements.count(batch);
+            let tangent = &self.out[n..n + rows];
+            scatter_entries(
+                tangent,
+                &self.positions[batch * rows..(batch + 1) * rows],
+                count,
+                factor,
+                values,
+            );
+            if !self.mirrored.is_empty() {
+                scatter_entries(
+                    tangent,
+                    &self.mirrored[batch * rows..(batch + 1) * rows],
+                    count,
+                    factor,
+                    values,
+                );
+            }
+        }
+    }
+
+    /// Adds d residual / d g[slot] to one column per slot of the integral.
+    pub fn add_global_tangent(&mut self, at: At<'_>, tangent: &GlobalTangent, columns: &mut [Vec<f64>]) {
+        let n = self.elements.local();
+        let mut out = vec![[0.0; BATCH]; n * tangent.slots.len()];
+        for batch in 0..self.elements.batches() {
+            let elements = self.elements.gather(batch, at.y, at.rates, at.alpha, &mut self.gathered);
+            (tangent.kernel)(&elements, at.g, &mut out);
+            for (column, rows) in columns.iter_mut().zip(out.chunks(n)) {
+                scatter_rows(&self.elements, batch, rows, 1.0, column);
+            }
+        }
+    }
+}
+
+fn tangent_rows(symmetric: bool, n: usize) -> usize {
+    if symmetric { n * (n + 1) / 2 } else { n * n }
+}
+
+fn scatter_rows(elements: &Elements, batch: usize, rows: &[Row], factor: f64, sum: &mut [f64]) {
+    let count = elements.count(batch);
+    for (row, unknowns) in rows.iter().zip(elements.unknowns(batch)) {
+        for (value, unknown) in row.iter().zip(unknowns).take(count) {
+            sum[*unknown as usize] += factor * value;
+        }
+    }
+}
+
+fn scatter_entries(rows: &[Row], positions: &[[u32; BATCH]], count: usize, factor: f64, values: &mut [f64]) {
+    for (row, position) in rows.iter().zip(positions) {
+        for (value, place) in row.iter().zip(position).take(count) {
+            values[*place as usize] += factor * value;
+        }
+    }
+}

@@ -9,6 +9,7 @@ mod algebra;
 mod condition;
 mod derivative;
 mod expr;
+mod names;
 mod quantity;
 mod reduce;
 mod symbol;
@@ -23,7 +24,8 @@ use crate::source::Span;
 
 pub use quantity::{Part, Quantity, QuantityKind, Region};
 pub use reduce::RunValue;
-pub use symbol::{FieldInput, SymbolKind, Symbols, input_name};
+pub use names::{input_name, piece_name, region_names, symbol_name};
+pub use symbol::{FieldInput, SymbolKind, Symbols};
 pub use value::{Condition, Value};
 
 /// What a lowering gives: a value, or what the compiler cannot do.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::model::{FieldId, Model, PairId, ParamId, Shape, StateId};
+use crate::model::{FieldId, PairId, ParamId, StateId};
 use crate::scalar::Symbol;
 
 /// One scalar that a field offers at a point: a component, or its derivative by an in-plane coordinate.
@@ -49,6 +49,8 @@ pub enum SymbolKind {
     Gap(PairId),
     /// Factor d rate / d value of the time integrator.
     Alpha,
+    /// Quadrature weight times the measure at the point, `2 pi r` included.
+    Weight,
     /// Truth of a comparison, 1 or 0, decided outside.
     Switch(usize),
     /// A value of a finished run, index into [`Lowering::run_values`](super::Lowering::run_values).
@@ -83,18 +85,5 @@ impl Symbols {
     /// The meaning of a symbol of this table.
     pub fn kind(&self, symbol: Symbol) -> SymbolKind {
         self.kinds[symbol.0 as usize]
-    }
-}
-
-/// Name of a field's scalar: `u_r`, `du_r_dz`, `phi`, `dphi_dx`.
-pub fn input_name(model: &Model, input: FieldInput) -> String {
-    let field = &model.fields[input.field.0];
-    let value = match field.shape {
-        Shape::Scalar => field.name.clone(),
-        _ => format!("{}_{}", field.name, model.coordinates.names[input.component]),
-    };
-    match input.derivative {
-        None => value,
-        Some(direction) => format!("d{value}_d{}", model.coordinates.names[direction]),
     }
 }

@@ -163,40 +163,9 @@ fn key(d: &Diagnostic) -> (Span, Severity, Code, &str) {
     (d.primary, d.severity, d.code, &d.message)
 }
 
-/// The candidate closest to `name`, if it is close enough to be a slip of the pen: at most one edit for every three
-/// characters (one in short names). Of equally close candidates the first in the alphabet wins.
+/// The candidate closest to `name`, if it is close enough to be a slip of the pen; never `name` itself.
 pub fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let limit = (name.chars().count() / 3).max(1);
-    candidates
-        .into_iter()
-        .filter(|candidate| *candidate != name)
-        .map(|candidate| (edit_distance(name, candidate), candidate))
-        .filter(|(distance, candidate)| *distance <= limit && *distance < candidate.chars().count())
-        .min()
-        .map(|(_, candidate)| candidate)
-}
-
-/// Optimal string alignment distance: insertions, deletions, replacements and swaps of neighbours. Letters that
-/// differ in case alone cost nothing beyond a first one.
-fn edit_distance(a: &str, b: &str) -> usize {
-    if a.to_lowercase() == b.to_lowercase() {
-        return usize::from(a != b);
-    }
-    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
-    let mut rows = vec![(0..=b.len()).collect::<Vec<usize>>()];
-    for i in 1..=a.len() {
-        let mut row = vec![i];
-        for j in 1..=b.len() {
-            let replace = rows[i - 1][j - 1] + usize::from(a[i - 1] != b[j - 1]);
-            let mut best = replace.min(rows[i - 1][j] + 1).min(row[j - 1] + 1);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                best = best.min(rows[i - 2][j - 2] + 1);
-            }
-            row.push(best);
-        }
-        rows.push(row);
-    }
-    rows[a.len()][b.len()]
+    ansatz_units::nearest(name, candidates.into_iter().filter(|candidate| *candidate != name))
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 
 mod expr;
 mod item;
+mod walk;
 
 pub use expr::*;
 pub use item::*;

@@ -437,7 +437,8 @@ impl Expr {
 }
 
 impl Arg {
-    fn parts(&self) -> Vec<&Expr> {
+    /// The value and what it runs over.
+    pub fn parts(&self) -> Vec<&Expr> {
         match &self.on {
             None => vec![&self.value],
             Some(On::Domain(domain)) => vec![&self.value, domain],

@@ -5,10 +5,10 @@
 //! All numbers are in the model's coherent units. Every scalar that is the same at all points of space stands in one array, the *globals* `g`,
 //! laid out by [`Layout`]; emitted functions read it by fixed indices.
 
-pub use ansatz_geometry::{Geometry, GeometryError};
+pub use ansatz_geometry::{Geometry, GeometryError, LoopPart, PathBuilder, Region, Turn};
 
-pub use crate::lane::{BATCH, Lane};
-pub use crate::mesh::{MeshSizing, SizeRule};
+pub use crate::lane::{BATCH, Lane, Simd};
+pub use crate::mesh::{MeshSizing, Place, SizeRule};
 pub use crate::vectorize;
 
 /// Everything the compiler says about a model.

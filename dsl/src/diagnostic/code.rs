@@ -29,7 +29,7 @@ macro_rules! codes {
 }
 
 codes! {
-    MissingSemicolon = "P001", "an item or statement without `=`-block ends with `;`";
+    MissingSemicolon = "P001", "an item or statement without a block ends with `;`";
     Expected = "P002", "something else was expected at this place";
     UnknownKeyword = "P003", "no item or statement starts with this word";
     ReservedName = "P004", "a word of the language cannot be declared as a name";

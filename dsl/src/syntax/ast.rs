@@ -4,10 +4,14 @@
 //! expanded. A file with syntax errors still gives a tree of what could be read; the names that the unreadable parts
 //! would have declared are in [`File::broken`], so that later stages do not complain about each use of them.
 
+#![allow(clippy::large_enum_variant, reason = "a tree is built once and then visited by reference")]
+
+mod block;
 mod expr;
 mod item;
 mod walk;
 
+pub use block::*;
 pub use expr::*;
 pub use item::*;
 

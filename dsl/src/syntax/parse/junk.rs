@@ -349,6 +349,9 @@ impl Failure<'_> {
             }
             Some(number) if self.found_text() == "(" => diagnostic
                 .help(format!("`{number}` is a quantity; to multiply by a call write `*` between them")),
+            _ if self.found_text() == "{" && self.expects_expr() => {
+                diagnostic.help("a set `{..}` is no value: it stands only behind `in`")
+            }
             _ => diagnostic,
         }
     }

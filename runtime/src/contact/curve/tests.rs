@@ -50,11 +50,11 @@ fn cubics_are_reproduced_on_any_spacing() {
     let positions = knots.map(cubic);
     let curve = free(&reference);
     // Spans that do not reach beyond the ends.
-    for span in 2..6 {
+    for (span, start) in knots.into_iter().enumerate().take(6).skip(2) {
         for part in [0.0, 0.4, 1.0] {
             let offset = part * curve.span_length(span);
             let [x, _, _] = curve.evaluate(span, offset, &positions);
-            assert!(distance(x, cubic(knots[span] + offset)) < 1e-13);
+            assert!(distance(x, cubic(start + offset)) < 1e-13);
         }
     }
 }

@@ -73,9 +73,9 @@ fn scenes() -> Vec<Scene> {
 fn the_gradient_is_the_derivative_of_the_gap() {
     for scene in scenes() {
         let gradient = scene.gradient(&scene.positions);
-        for i in 0..32 {
+        for (i, derivative) in gradient.into_iter().enumerate() {
             let [difference] = central(&scene.positions, (i / 2, i % 2), |p| [scene.gap(p).value]);
-            assert!((gradient[i] - difference).abs() < 1e-8, "{i}: {} {difference}", gradient[i]);
+            assert!((derivative - difference).abs() < 1e-8, "{i}: {derivative} {difference}");
         }
     }
 }
@@ -84,16 +84,11 @@ fn the_gradient_is_the_derivative_of_the_gap() {
 fn the_hessian_is_the_derivative_of_the_gradient() {
     for scene in scenes() {
         let hessian = scene.hessian();
-        for i in 0..32 {
+        for (i, row) in hessian.into_iter().enumerate() {
             let differences = central(&scene.positions, (i / 2, i % 2), |p| scene.gradient(p));
-            for j in 0..32 {
+            for (value, difference) in row.into_iter().zip(differences) {
                 // Second derivatives reach about 10 here.
-                assert!(
-                    (hessian[i][j] - differences[j]).abs() < 1e-7,
-                    "{i} {j}: {} {}",
-                    hessian[i][j],
-                    differences[j]
-                );
+                assert!((value - difference).abs() < 1e-7, "{i}: {value} {difference}");
             }
         }
     }

@@ -192,7 +192,7 @@ mod tests {
         let words = ["physics", "param", "path", "eta", "u"];
         assert_eq!(did_you_mean("phyiscs", words), Some("physics"));
         assert_eq!(did_you_mean("parm", words), Some("param"));
-        assert_eq!(did_you_mean("ETA", words), Some("eta"));
+        assert_eq!(did_you_mean("Eta", words), Some("eta"));
         assert_eq!(
             did_you_mean("v", words),
             None,

@@ -11,8 +11,10 @@ pub mod lane;
 pub mod mesh;
 pub mod observer;
 pub mod output;
+pub mod record;
 pub mod settings;
 pub mod solve;
 pub mod system;
+pub mod time;
 
 pub use error::Error;

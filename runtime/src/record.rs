@@ -1,0 +1,199 @@
+//! The record of a run: globals at every accepted step, when events fired first, and how the run ended.
+
+use crate::error::SolveError;
+use crate::generated::{Event, Record};
+use crate::time::history::{blend, interpolation_weights};
+
+/// How a run ended.
+#[derive(Clone, Debug)]
+pub enum End {
+    /// It reached its end time.
+    Finished,
+    /// An event (by index) stopped it.
+    Stopped(usize),
+    /// The equations could not be solved any further.
+    Diverged(Box<SolveError>),
+}
+
+/// Record of a run, finished or not.
+#[derive(Clone)]
+pub struct RunRecord {
+    events: &'static [Event],
+    times: Vec<f64>,
+    steps: Vec<Vec<f64>>,
+    /// Index of the first point of the smooth stretch that each point belongs to.
+    stretches: Vec<usize>,
+    /// First time of each event.
+    first: Vec<Option<f64>>,
+    /// The documented event that fired last.
+    told: Option<usize>,
+    end: End,
+}
+
+impl RunRecord {
+    /// An empty record of a run with these events.
+    pub fn new(events: &'static [Event]) -> Self {
+        Self {
+            events,
+            times: Vec::new(),
+            steps: Vec::new(),
+            stretches: Vec::new(),
+            first: vec![None; events.len()],
+            told: None,
+            end: End::Finished,
+        }
+    }
+
+    /// Adds the start of a smooth stretch: the start of the run, or what a jump led to.
+    pub fn begin_stretch(&mut self, time: f64, globals: Vec<f64>) {
+        self.stretches.push(self.times.len());
+        self.times.push(time);
+        self.steps.push(globals);
+    }
+
+    /// Adds the end of an accepted step.
+    pub fn push(&mut self, time: f64, globals: Vec<f64>) {
+        self.stretches.push(self.stretches.last().copied().unwrap_or(0));
+        self.times.push(time);
+        self.steps.push(globals);
+    }
+
+    /// Notes that an event fired.
+    pub fn fire(&mut self, event: usize, time: f64) {
+        self.first[event].get_or_insert(time);
+        if !self.events[event].doc.is_empty() {
+            self.told = Some(event);
+        }
+    }
+
+    /// Notes how the run ended.
+    pub fn finish(&mut self, end: End) {
+        self.end = end;
+    }
+
+    /// How the run ended.
+    pub fn end(&self) -> &End {
+        &self.end
+    }
+
+    /// Why the run could not go on, if it could not.
+    pub fn failure(&self) -> Option<&SolveError> {
+        match &self.end {
+            End::Diverged(error) => Some(error),
+            End::Finished | End::Stopped(_) => None,
+        }
+    }
+
+    /// The outcome in one word: `diverged` if the equations could not be solved; else the event that stopped the run; else the documented event
+    /// that fired last; else `finished`.
+    pub fn outcome(&self) -> &'static str {
+        match (&self.end, &self.told) {
+            (End::Diverged(_), _) => "diverged",
+            (End::Stopped(event), _) | (End::Finished, Some(event)) => self.events[*event].name,
+            (End::Finished, None) => "finished",
+        }
+    }
+
+    /// Times of the recorded points, ascending; the two sides of a jump have the same time.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Value of a function of the globals at a time. At a recorded time it is the value there (before a jump); inside a step it is interpolated
+    /// between the values at up to three recorded points, with weights that depend on the times alone. Times outside the run give the value
+    /// at its nearest end, an empty record gives not-a-number.
+    pub fn interpolate(&self, time: f64, value: impl Fn(&[f64]) -> f64) -> f64 {
+        let (weights, points) = self.nodes(time);
+        weights.iter().zip(points).map(|(w, g)| w * value(g)).reduce(|a, b| a + b).unwrap_or(f64::NAN)
+    }
+
+    /// Weights of the points that surround a time.
+    fn nodes(&self, time: f64) -> (Vec<f64>, &[Vec<f64>]) {
+        let after = self.times.partition_point(|t| *t < time).min(self.times.len().saturating_sub(1));
+        let on_point = self.times.get(after).is_none_or(|t| *t <= time);
+        if on_point || after == 0 {
+            return (vec![1.0], self.steps.get(after..=after).unwrap_or(&[]));
+        }
+        let first = after.saturating_sub(2).max(self.stretches[after]).min(after - 1);
+        (interpolation_weights(&self.times[first..=after], time), &self.steps[first..=after])
+    }
+}
+
+impl Record for RunRecord {
+    fn event_time(&self, name: &str) -> Option<f64> {
+        let event = self.events.iter().position(|event| event.name == name)?;
+        self.first[event]
+    }
+
+    fn steps(&self) -> &[Vec<f64>] {
+        &self.steps
+    }
+
+    fn at(&self, time: f64) -> Vec<f64> {
+        let (weights, points) = self.nodes(time);
+        blend(&weights, points.iter().map(Vec::as_slice))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generated::Trigger;
+
+    const fn event(name: &'static str, doc: &'static str) -> Event {
+        Event { name, doc, trigger: Trigger::EveryStep, actions: &[] }
+    }
+
+    static EVENTS: [Event; 3] = [event("touched", ""), event("passed", "got through"), event("stuck", "")];
+
+    fn parabola() -> RunRecord {
+        let mut record = RunRecord::new(&EVENTS);
+        record.begin_stretch(0.0, vec![0.0, 0.0]);
+        [1.0, 1.5, 3.0f64].iter().for_each(|&t| record.push(t, vec![t, t * t]));
+        record.begin_stretch(3.0, vec![3.0, 100.0]);
+        record.push(4.0, vec![4.0, 102.0]);
+        record.push(5.0, vec![5.0, 102.0]);
+        record
+    }
+
+    #[test]
+    fn inside_a_stretch_a_parabola_is_exact_and_its_first_step_linear() {
+        let record = parabola();
+        assert!((record.at(2.0)[1] - 4.0).abs() < 1e-14);
+        assert_eq!(record.at(0.5), vec![0.5, 0.5]);
+        assert_eq!(record.at(3.5), vec![3.5, 101.0]);
+    }
+
+    #[test]
+    fn at_a_jump_and_outside_the_run_points_count() {
+        let record = parabola();
+        assert_eq!(record.at(3.0)[1], 9.0);
+        assert_eq!(record.at(-1.0)[1], 0.0);
+        assert_eq!(record.at(9.0)[1], 102.0);
+        assert_eq!(RunRecord::new(&EVENTS).at(1.0), Vec::<f64>::new());
+    }
+
+    #[test]
+    fn linear_relations_of_values_hold_in_between() {
+        let record = parabola();
+        let (a, b) = (|g: &[f64]| (g[0] + 1.0).ln(), |g: &[f64]| g[1].sin());
+        for time in [0.3, 1.2, 2.9, 3.1, 4.6] {
+            let whole = record.interpolate(time, |g| 2.0 * a(g) - b(g));
+            let parts = 2.0 * record.interpolate(time, a) - record.interpolate(time, b);
+            assert!((whole - parts).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn the_outcome_names_what_happened() {
+        let mut record = parabola();
+        assert_eq!(record.outcome(), "finished");
+        record.fire(0, 1.0);
+        assert_eq!(record.outcome(), "finished", "an event without documentation is no outcome");
+        record.fire(1, 2.0);
+        record.fire(1, 2.5);
+        assert_eq!((record.outcome(), record.event_time("passed")), ("passed", Some(2.0)));
+        record.finish(End::Stopped(2));
+        assert_eq!(record.outcome(), "stuck");
+    }
+}

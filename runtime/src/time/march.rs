@@ -1,0 +1,156 @@
+//! Marching: accepted steps one after another, each predicted from the last ones, solved, and judged.
+
+use super::ImplicitSystem;
+use super::control::{Control, Magnitudes, Verdict, milne_factor};
+use super::history::{History, blend, interpolation_weights};
+use super::integrator::{Point, Tableau, advance, tableau};
+use crate::error::SolveError;
+use crate::generated::{Integrator, Solve};
+
+/// Part of the largest step over which the rates at a start are measured.
+const TRIAL: f64 = 1e-3;
+
+/// A step that was solved and found accurate enough, not yet taken.
+#[derive(Clone, Debug)]
+pub struct Proposal {
+    /// Its end.
+    pub end: Point,
+    /// Its size.
+    pub size: f64,
+    /// Newton iterations of the attempt that succeeded.
+    pub iterations: usize,
+}
+
+/// Marches one system through time.
+pub struct March {
+    method: &'static Tableau,
+    control: Control,
+    magnitudes: Magnitudes,
+    history: History,
+    settings: Solve,
+}
+
+impl March {
+    /// Starts at `time` with consistent unknowns `y`. The rates there come from one tiny step of backward Euler.
+    pub fn new(
+        system: &mut dyn ImplicitSystem,
+        settings: Solve,
+        time: f64,
+        y: Vec<f64>,
+    ) -> Result<Self, SolveError> {
+        let mut control = Control::new(settings.min_step, settings.max_step, settings.step_tolerance);
+        let mut magnitudes = Magnitudes::new(system.groups());
+        let start = with_rates(system, settings, time, y)?;
+        magnitudes.see(&start.values);
+        control.restart(magnitudes.time_scale(&start.rates));
+        let method = tableau(settings.integrator);
+        Ok(Self { method, control, magnitudes, history: History::new(start), settings })
+    }
+
+    /// Starts a new smooth stretch, as after a jump.
+    pub fn restart(
+        &mut self,
+        system: &mut dyn ImplicitSystem,
+        time: f64,
+        y: Vec<f64>,
+    ) -> Result<(), SolveError> {
+        let start = with_rates(system, self.settings, time, y)?;
+        self.magnitudes.see(&start.values);
+        self.control.restart(self.magnitudes.time_scale(&start.rates));
+        self.history = History::new(start);
+        Ok(())
+    }
+
+    /// The last accepted point, or the start.
+    pub fn last(&self) -> &Point {
+        self.history.last()
+    }
+
+    /// Solves the next step, at most to `limit`, in smaller and smaller sizes until it converges and is accurate. The error of the smallest size
+    /// comes back with the time reached and that size.
+    pub fn propose(&mut self, system: &mut dyn ImplicitSystem, limit: f64) -> Result<Proposal, SolveError> {
+        let mut size = self.control.next(limit - self.last().time);
+        loop {
+            size = match self.attempt(system, size, limit) {
+                Ok((proposal, error, order)) => match self.control.judge(size, error, order) {
+                    Verdict::Accept => return Ok(proposal),
+                    Verdict::Retry(smaller) => smaller,
+                },
+                Err(error) => match self.control.halve(size) {
+                    Some(half) => half,
+                    None => return Err(SolveError { time: self.last().time, step: size, ..error }),
+                },
+            }
+        }
+    }
+
+    /// Solves the step that ends at `time`, whatever its error.
+    pub fn propose_until(
+        &mut self,
+        system: &mut dyn ImplicitSystem,
+        time: f64,
+    ) -> Result<Proposal, SolveError> {
+        self.attempt(system, time - self.last().time, time).map(|(proposal, ..)| proposal)
+    }
+
+    /// A step with its relative error and the order of that estimate.
+    fn attempt(
+        &self,
+        system: &mut dyn ImplicitSystem,
+        size: f64,
+        limit: f64,
+    ) -> Result<(Proposal, f64, usize), SolveError> {
+        let start = self.last();
+        let predict = |time: f64| self.history.extrapolate(time, self.method.order);
+        let (mut end, iterations) = advance(self.method, system, start, size, predict)?;
+        if (end.time - limit).abs() < 1e-9 * size {
+            end.time = limit;
+        }
+        let remainder = self.history.remainder(end.time, self.method.order);
+        let factor = milne_factor(self.method.error_constant, remainder, size);
+        let predicted = self.history.extrapolate(end.time, self.method.order);
+        let error = factor * self.magnitudes.relative_difference(&end.values, &predicted);
+        Ok((Proposal { end, size, iterations }, error, remainder.0 + 1))
+    }
+
+    /// Takes a proposed step.
+    pub fn accept(&mut self, proposal: Proposal) {
+        self.magnitudes.see(&proposal.end.values);
+        self.history.push(proposal.end);
+    }
+
+    /// Unknowns and rates at a time inside a proposed step, interpolated between its end and the last accepted points.
+    pub fn interpolate(&self, proposal: &Proposal, time: f64) -> Point {
+        let points = self.history.points();
+        let recent = &points[points.len().saturating_sub(2)..];
+        let window: Vec<&Point> = recent.iter().chain([&proposal.end]).collect();
+        let times: Vec<f64> = window.iter().map(|p| p.time).collect();
+        let weights = interpolation_weights(&times, time);
+        Point {
+            time,
+            values: blend(&weights, window.iter().map(|p| p.values.as_slice())),
+            rates: blend(&weights, window.iter().map(|p| p.rates.as_slice())),
+        }
+    }
+}
+
+/// A start with its rates, measured by a tiny step.
+fn with_rates(
+    system: &mut dyn ImplicitSystem,
+    settings: Solve,
+    time: f64,
+    values: Vec<f64>,
+) -> Result<Point, SolveError> {
+    let start = Point { time, rates: vec![0.0; values.len()], values };
+    let euler = tableau(Integrator::BackwardEuler);
+    let mut size = (TRIAL * settings.max_step).max(settings.min_step);
+    loop {
+        match advance(euler, system, &start, size, |_| start.values.clone()) {
+            Ok((end, _)) => return Ok(Point { rates: end.rates, ..start }),
+            Err(error) if 0.5 * size < settings.min_step => {
+                return Err(SolveError { time, step: size, ..error });
+            }
+            Err(_) => size *= 0.5,
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! Time: from a discretised model F(t, y, y') = 0 to its accepted steps, events and outputs.
+//!
+//! The pieces, from the inside out: [`integrator`] makes one step of the implicit method, [`history`] predicts the next step from the last ones,
+//! [`control`] chooses step sizes, [`march`] puts these together, [`events`] finds when conditions turn true inside a step, [`schedule`] knows when
+//! something is due, [`output`] makes table rows and frames, and [`run`] drives a whole run. None of them knows meshes or physics: what is integrated is an [`ImplicitSystem`].
+
+pub mod control;
+pub mod events;
+pub mod history;
+pub mod integrator;
+pub mod march;
+pub mod output;
+pub mod root;
+pub mod run;
+pub mod schedule;
+#[cfg(test)]
+mod tests;
+
+use crate::error::SolveError;
+use integrator::Point;
+use std::ops::Range;
+
+/// One implicit stage: find y with F(time, y, alpha (y - base)) = 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Stage<'a> {
+    /// Time of the stage.
+    pub time: f64,
+    /// d rate / d value [1/time]; 0 in a stationary problem.
+    pub alpha: f64,
+    /// Base of the rates, one entry per unknown.
+    pub base: &'a [f64],
+}
+
+impl Stage<'_> {
+    /// Rates that belong to `y`.
+    pub fn rates(&self, y: &[f64]) -> Vec<f64> {
+        y.iter().zip(self.base).map(|(y, base)| self.alpha * (y - base)).collect()
+    }
+}
+
+/// Unknowns of one kind, such as a field or a state: they share one magnitude in the error test.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// Their places in y.
+    pub range: Range<usize>,
+    /// Whether the error test looks at them. Algebraic unknowns follow from the others and are left out.
+    pub tested: bool,
+}
+
+/// A differential-algebraic system F(t, y, y') = 0 that can solve its implicit stages.
+pub trait ImplicitSystem {
+    /// The kinds of unknowns.
+    fn groups(&self) -> Vec<Group>;
+
+    /// Solves for y at a stage; `y` is the prediction on entry and the solution on return. Returns the Newton iterations it took.
+    /// After an error the contents of `y` mean nothing.
+    fn solve_stage(&mut self, stage: &Stage<'_>, y: &mut [f64]) -> Result<usize, SolveError>;
+
+    /// Gives states (by number) new values and makes `y` consistent with them at `time`.
+    fn set_states(&mut self, time: f64, y: &mut [f64], values: &[(usize, f64)]) -> Result<(), SolveError>;
+
+    /// All globals at a time with these unknowns and rates, observables included.
+    fn observe(&mut self, point: &Point) -> Vec<f64>;
+
+    /// Columns of a field frame (by number) at a point with these globals: node by node, component by component [internal units].
+    fn sample(&mut self, frame: usize, point: &Point, g: &[f64]) -> Vec<Vec<f64>>;
+}

@@ -1,0 +1,62 @@
+//! Output during a run: rows of tables and field frames, at steps or at multiples of a time between them.
+//!
+//! Steps do not have to meet output times. A row there is interpolated between the rows at steps, with the same weights for every column, so what
+//! balances at the steps balances in the table; a frame is sampled from interpolated unknowns.
+
+use super::ImplicitSystem;
+use super::integrator::Point;
+use super::schedule::Schedule;
+use crate::error::Error;
+use crate::generated::{Every, Frames, Record, Table};
+use crate::observer::{Frame, Observer};
+use crate::record::RunRecord;
+
+/// Which output is due when.
+pub struct Outputs {
+    tables: &'static [Table],
+    table_schedules: Vec<Schedule>,
+    frame_schedules: Vec<Schedule>,
+}
+
+impl Outputs {
+    /// Output of a run that starts at `start` with globals `g`.
+    pub fn new(tables: &'static [Table], frames: &'static [Frames], start: f64, g: &[f64]) -> Self {
+        let schedule = |every: &Every| match every {
+            Every::Step => Schedule::every_step(),
+            Every::Time(period) => Schedule::multiples(period(g), start),
+        };
+        Self {
+            tables,
+            table_schedules: tables.iter().map(|table| schedule(&table.every)).collect(),
+            frame_schedules: frames.iter().map(|frames| schedule(&frames.every)).collect(),
+        }
+    }
+
+    /// Writes what is due up to the last recorded point. `point` gives unknowns and rates at a time inside the last step.
+    pub fn emit(
+        &mut self,
+        system: &mut dyn ImplicitSystem,
+        record: &RunRecord,
+        point: impl Fn(f64) -> Point,
+        observer: &mut dyn Observer,
+    ) -> Result<(), Error> {
+        let Some(&end) = record.times().last() else { return Ok(()) };
+        for (table, schedule) in self.table_schedules.iter_mut().enumerate() {
+            for time in schedule.take(end) {
+                observer.row(table, &row(&self.tables[table], record, time))?;
+            }
+        }
+        for (frame, schedule) in self.frame_schedules.iter_mut().enumerate() {
+            for time in schedule.take(end) {
+                let columns = system.sample(frame, &point(time), &record.at(time));
+                observer.frame(Frame { frame, time, columns })?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A table's row at a time [display units].
+fn row(table: &Table, record: &RunRecord, time: f64) -> Vec<f64> {
+    table.columns.iter().map(|c| record.interpolate(time, |g| (c.value)(g) / c.unit_value)).collect()
+}

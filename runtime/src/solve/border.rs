@@ -35,7 +35,7 @@ pub struct BorderedSolver {
     columns: Vec<f64>,
     rows: Vec<f64>,
     corner: Vec<f64>,
-    /// `K^-1 B`.
+    /// `K^-1 B`, then `K^-1 C` where it was wanted.
     eliminated: Vec<f64>,
     schur_matrix: Vec<f64>,
     schur: DenseLu,
@@ -52,7 +52,8 @@ impl BorderedSolver {
     /// As [`LinearSolver::new`].
     pub fn new(pattern: &SparsePattern, borders: usize) -> Result<Self, LinearError> {
         let size = pattern.size();
-        let [columns, rows, eliminated] = [(); 3].map(|()| vec![0.0; size * borders]);
+        let [columns, rows] = [(); 2].map(|()| vec![0.0; size * borders]);
+        let eliminated = vec![0.0; 2 * size * borders];
         let [corner, schur_matrix] = [(); 2].map(|()| vec![0.0; borders * borders]);
         let [residual, solution] = [(); 2].map(|()| vec![0.0; size]);
         let [border_residual, border_solution] = [(); 2].map(|()| vec![0.0; borders]);
@@ -97,8 +98,17 @@ impl BorderedSolver {
         border: Border<'_>,
         expected: Definiteness,
     ) -> Result<FactorReport, LinearError> {
+        let rows = border.rows.unwrap_or(border.columns);
         self.corner.copy_from_slice(border.corner);
-        self.factor_around_corner(values, border.columns, border.rows, expected)
+        let report = self.sparse.factor(values, expected)?;
+        self.eliminate_columns(border.columns, rows, false)?;
+        let negative_pivots = match (report.negative_pivots, border.rows) {
+            (Some(negative), None) => {
+                Some(negative + negative_eigenvalues(self.borders, &mut self.schur_matrix))
+            }
+            _ => None,
+        };
+        Ok(FactorReport { negative_pivots, ..report })
     }
 
     /// Factors the sum of the sparse matrix and products of columns, `K + sum_k b_k c_k^T`.
@@ -106,7 +116,10 @@ impl BorderedSolver {
     /// The sum is the matrix of the system bordered by `b_k`, `c_k` and minus the identity once the
     /// border unknowns are eliminated (Sherman, Morrison and Woodbury). [`Self::solve`] with a
     /// vanishing border right-hand side solves with the sum and leaves `c_k^T x` in the border.
-    /// The report's negative eigenvalues are those of the sum. `c = None` stands for `c = b`.
+    /// `None` stands for `c = b`.
+    ///
+    /// When `K` is symmetric, the report's negative eigenvalues are those of the symmetric part of
+    /// the products added to `K`, so of the sum whenever that is symmetric.
     ///
     /// # Errors
     /// As [`Self::factor`].
@@ -119,39 +132,57 @@ impl BorderedSolver {
     ) -> Result<FactorReport, LinearError> {
         self.corner.fill(0.0);
         self.corner.iter_mut().step_by(self.borders + 1).for_each(|diagonal| *diagonal = -1.0);
-        let report = self.factor_around_corner(values, b, c, expected)?;
-        let negative_pivots = report.negative_pivots.map(|negative| negative.saturating_sub(self.borders));
+        let report = self.sparse.factor(values, expected)?;
+        let both = c.is_some() && report.negative_pivots.is_some();
+        self.eliminate_columns(b, c.unwrap_or(b), both)?;
+        let change = match c {
+            Some(_) => self.negative_by_products(),
+            None => self.negative_by_squares(),
+        };
+        let negative_pivots = report.negative_pivots.map(|negative| negative.saturating_add_signed(change));
         Ok(FactorReport { negative_pivots, ..report })
     }
 
-    fn factor_around_corner(
-        &mut self,
-        values: &[f64],
-        columns: &[f64],
-        rows: Option<&[f64]>,
-        expected: Definiteness,
-    ) -> Result<FactorReport, LinearError> {
-        self.columns.copy_from_slice(columns);
-        self.rows.copy_from_slice(rows.unwrap_or(columns));
-        self.eliminated.copy_from_slice(columns);
-        let report = self.sparse.factor(values, expected)?;
+    /// Solves for the columns of `B`, and of `C` when asked, and factors `S`.
+    fn eliminate_columns(&mut self, b: &[f64], c: &[f64], both: bool) -> Result<(), LinearError> {
         if self.borders == 0 {
-            return Ok(report);
+            return Ok(());
         }
-        self.sparse.solve(&mut self.eliminated)?;
+        self.columns.copy_from_slice(b);
+        self.rows.copy_from_slice(c);
+        let length = b.len();
+        self.eliminated[..length].copy_from_slice(b);
+        self.eliminated[length..].copy_from_slice(c);
+        let wanted = if both { 2 * length } else { length };
+        self.sparse.solve_unchecked(&mut self.eliminated[..wanted])?;
         self.schur_matrix.copy_from_slice(&self.corner);
         let eliminated = self.eliminated.chunks_exact(self.sparse.size());
         for (schur, eliminated) in self.schur_matrix.chunks_exact_mut(self.borders).zip(eliminated) {
             subtract_transposed(&self.rows, eliminated, schur);
         }
-        self.schur.factor(&self.schur_matrix).map_err(|border| LinearError::SingularBorder { border })?;
-        let negative_pivots = match (report.negative_pivots, rows) {
-            (Some(negative), None) => {
-                Some(negative + negative_eigenvalues(self.borders, &mut self.schur_matrix))
-            }
-            _ => None,
-        };
-        Ok(FactorReport { negative_pivots, ..report })
+        self.schur.factor(&self.schur_matrix).map_err(|border| LinearError::SingularBorder { border })
+    }
+
+    /// Change of the number of negative eigenvalues from `K` to `K + B B^T`.
+    fn negative_by_squares(&mut self) -> isize {
+        negative_eigenvalues(self.borders, &mut self.schur_matrix) as isize - self.borders as isize
+    }
+
+    /// Change of the number of negative eigenvalues from `K` to `K + (B C^T + C B^T) / 2`.
+    ///
+    /// The latter is `K - U J^-1 U^T` with `U = [B C]` and `J = -2 [0 I; I 0]`, which has one
+    /// negative eigenvalue for each border; Haynsworth's formula is applied from both corners.
+    fn negative_by_products(&self) -> isize {
+        let order = 2 * self.borders;
+        let mut schur = vec![0.0; order * order];
+        let eliminated = self.eliminated.chunks_exact(self.sparse.size());
+        for (k, (column, eliminated)) in schur.chunks_exact_mut(order.max(1)).zip(eliminated).enumerate() {
+            column[(k + self.borders) % order] = -2.0;
+            let (upper, lower) = column.split_at_mut(self.borders);
+            subtract_transposed(&self.columns, eliminated, upper);
+            subtract_transposed(&self.rows, eliminated, lower);
+        }
+        negative_eigenvalues(order, &mut schur) as isize - self.borders as isize
     }
 
     /// Solves in place: `f` becomes `x`, `g` becomes `y`.
@@ -358,18 +389,32 @@ mod tests {
     }
 
     #[test]
-    fn an_unstable_spring_shows_in_the_inertia_of_the_sum() {
-        let (pattern, values) = chain(MatrixKind::Symmetric, 0.1);
-        let pull = vec![1.0; SIZE];
-        let push: Vec<f64> = pull.iter().map(|x| -x).collect();
-        let mut solver = BorderedSolver::new(&pattern, 1).unwrap();
-        let report = solver.factor_low_rank(&values, &pull, Some(&push), Definiteness::Positive).unwrap();
-        // the rows differ from the columns, so nothing is promised
-        assert_eq!(report.negative_pivots, None);
-        // K - v v^T / 2 with v^T K^-1 v / 2 = 40 / 0.1 / 2 > 1: one direction is unstable
-        let border = Border { columns: &pull, rows: None, corner: &[2.0] };
-        let report = solver.factor(&values, border, Definiteness::Positive).unwrap();
-        assert_eq!(report.negative_pivots, Some(1));
+    fn unstable_products_show_in_the_inertia_of_the_sum() {
+        // K + C M C^T with a symmetric M, given as products of B = C M with C
+        let c = columns(2, 0.4);
+        for (ground, m) in [
+            (0.1, [[1.0, 2.0], [2.0, 1.0]]),
+            (0.1, [[-1.0, 0.5], [0.5, -1.0]]),
+            (0.1, [[0.0, 0.0], [0.0, 0.0]]),
+            (-0.3, [[-1.0, 0.5], [0.5, -1.0]]),
+            (-0.3, [[1e3, 0.0], [0.0, 1e-3]]),
+        ] {
+            let (pattern, values) = chain(MatrixKind::Symmetric, ground);
+            let product = |j: usize, k: usize| c[k] * m[0][j] + c[SIZE + k] * m[1][j];
+            let b: Vec<f64> =
+                (0..2).flat_map(|j| (0..SIZE).map(move |k| (j, k))).map(|(j, k)| product(j, k)).collect();
+            let mut sum: Vec<f64> = (0..SIZE * SIZE)
+                .map(|entry| (0..2).map(|j| b[j * SIZE + entry % SIZE] * c[j * SIZE + entry / SIZE]).sum())
+                .collect();
+            pattern.for_each(|position, row, column| {
+                sum[column * SIZE + row] += values[position];
+                sum[row * SIZE + column] += if row == column { 0.0 } else { values[position] };
+            });
+            let negative = negative_eigenvalues(SIZE, &mut sum);
+            let mut solver = BorderedSolver::new(&pattern, 2).unwrap();
+            let report = solver.factor_low_rank(&values, &b, Some(&c), Definiteness::Positive).unwrap();
+            assert_eq!(report.negative_pivots, Some(negative), "{ground} {m:?}");
+        }
     }
 
     #[test]

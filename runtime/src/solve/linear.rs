@@ -8,6 +8,7 @@ mod error;
 mod matrix;
 mod scaling;
 mod storage;
+mod sweep;
 mod symmetric;
 #[cfg(test)]
 mod tests;
@@ -152,12 +153,7 @@ impl LinearSolver {
     /// # Errors
     /// [`LinearError::NotFactored`], right-hand sides or solutions that are not finite.
     pub fn solve(&mut self, rhs: &mut [f64]) -> Result<SolveReport, LinearError> {
-        let size = self.size();
-        self.resize(rhs.len());
-        for (original, scaled) in rhs.chunks_exact(size).zip(self.rhs.chunks_exact_mut(size)) {
-            self.matrix.load_rhs(original, scaled)?;
-        }
-        self.solution.copy_from_slice(&self.rhs);
+        self.load(rhs)?;
         self.apply_factor(Target::Solution)?;
         let mut report = self.check();
         while report.backward_error > BACKWARD_ERROR && report.refinements < REFINEMENTS {
@@ -167,10 +163,36 @@ impl LinearSolver {
                 break;
             }
         }
-        for (scaled, original) in self.solution.chunks_exact(size).zip(rhs.chunks_exact_mut(size)) {
-            self.matrix.unload_solution(scaled, original)?;
-        }
+        self.unload(rhs)?;
         Ok(report)
+    }
+
+    /// As [`Self::solve`], leaving the check of the residual to the caller.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub(super) fn solve_unchecked(&mut self, rhs: &mut [f64]) -> Result<(), LinearError> {
+        self.load(rhs)?;
+        self.apply_factor(Target::Solution)?;
+        self.unload(rhs)
+    }
+
+    /// Takes over right-hand sides, with which a solution starts.
+    fn load(&mut self, rhs: &[f64]) -> Result<(), LinearError> {
+        self.resize(rhs.len());
+        let size = self.size();
+        for (original, scaled) in rhs.chunks_exact(size).zip(self.rhs.chunks_exact_mut(size)) {
+            self.matrix.load_rhs(original, scaled)?;
+        }
+        self.solution.copy_from_slice(&self.rhs);
+        Ok(())
+    }
+
+    /// Hands out the solutions.
+    fn unload(&self, solutions: &mut [f64]) -> Result<(), LinearError> {
+        let size = self.size();
+        let mut columns = self.solution.chunks_exact(size).zip(solutions.chunks_exact_mut(size));
+        columns.try_for_each(|(scaled, original)| self.matrix.unload_solution(scaled, original))
     }
 
     /// Adds the correction that the residual asks for.
@@ -186,7 +208,10 @@ impl LinearSolver {
             Target::Residual => &mut self.residual,
         };
         match (self.factored, &mut self.symmetric, &mut self.unsymmetric) {
-            (Some(Method::Llt | Method::Lblt), Some(factor), _) => factor.solve(x),
+            (Some(Method::Llt | Method::Lblt), Some(factor), _) => {
+                factor.solve(x);
+                Ok(())
+            }
             (Some(Method::Lu), _, Some(factor)) => factor.solve(x),
             _ => Err(LinearError::NotFactored),
         }

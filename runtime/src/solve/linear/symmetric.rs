@@ -7,6 +7,8 @@
 use super::error::LinearError;
 use super::matrix::ScaledMatrix;
 use super::storage::{Scratch, symbolic_matrix, zeros};
+use super::sweep::{Factor, Row, Supernodes};
+use crate::lane::BATCH;
 use crate::solve::sparse::SparsePattern;
 use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
@@ -23,6 +25,9 @@ use faer::{Conj, MatMut, Par, Side};
 /// Always supernodal: measured no slower than simplicial from a hundred equations upwards, and the
 /// simplicial form has no pivoting. Any negative threshold has this effect, also for diagonal matrices.
 const SUPERNODAL: SupernodalThreshold = SupernodalThreshold(-1.0);
+
+/// Fewer columns than this are solved one by one.
+const FEW: usize = 3;
 
 /// What the pivots say about a factored matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,13 +57,16 @@ impl Pivots {
 pub struct SymmetricFactor {
     symbolic: SymbolicCholesky<u32>,
     pattern: SymbolicSparseColMat<u32>,
+    nodes: Supernodes,
     /// Position of every pivot among the values of the factor.
     diagonal: Vec<usize>,
     values: Vec<f64>,
     subdiagonal: Vec<f64>,
+    /// Exchanges inside supernodes; none after Cholesky.
     forward: Vec<u32>,
     inverse: Vec<u32>,
     permuted: Vec<f64>,
+    rows: Vec<Row>,
     definite: bool,
     scratch: Scratch,
 }
@@ -105,6 +113,7 @@ impl SymmetricFactor {
         let symbolic = analysis.symbolic;
         let size = symbolic.nrows();
         let structure = supernodes(&symbolic);
+        let nodes = gather(structure);
         let scratch = Scratch::new(&[
             supernodal::factorize_supernodal_numeric_llt_scratch::<u32, f64>(
                 structure,
@@ -119,7 +128,9 @@ impl SymmetricFactor {
             structure.solve_in_place_scratch::<f64>(1, Par::Seq),
         ])?;
         Ok(Self {
-            diagonal: diagonal_positions(structure),
+            diagonal: nodes.diagonal(),
+            nodes,
+            rows: Vec::new(),
             values: zeros(symbolic.len_val())?,
             pattern: symbolic_matrix(pattern),
             subdiagonal: vec![0.0; size],
@@ -135,6 +146,7 @@ impl SymmetricFactor {
     /// Cholesky `L L^T`, or `None` when a pivot is not positive.
     pub fn llt(&mut self, matrix: &ScaledMatrix) -> Option<Pivots> {
         self.definite = true;
+        self.forward.iter_mut().zip(0..).for_each(|(place, k)| *place = k);
         supernodal::factorize_supernodal_numeric_llt(
             &mut self.values,
             SparseColMatRef::new(self.pattern.as_ref(), matrix.values()),
@@ -193,38 +205,86 @@ impl SymmetricFactor {
     }
 
     /// Solves in place for the columns of `x`, in elimination order, `size` numbers each.
-    ///
-    /// # Errors
-    /// [`LinearError::TooLarge`] when there is no memory for so many columns.
-    pub fn solve(&mut self, x: &mut [f64]) -> Result<(), LinearError> {
+    pub fn solve(&mut self, x: &mut [f64]) {
+        for columns in x.chunks_mut(BATCH * self.diagonal.len()) {
+            if columns.len() < FEW * self.diagonal.len() {
+                columns.chunks_exact_mut(self.diagonal.len()).for_each(|column| self.solve_one(column));
+            } else {
+                self.solve_batch(columns);
+            }
+        }
+    }
+
+    /// Solves for one column.
+    fn solve_one(&mut self, x: &mut [f64]) {
         let size = self.diagonal.len();
-        let columns = x.len() / size;
         let structure = supernodes(&self.symbolic);
-        let stack = self.scratch.stack_for(structure.solve_in_place_scratch::<f64>(columns, Par::Seq))?;
+        let stack = self.scratch.stack();
         if self.definite {
             let factor = SupernodalLltRef::new(structure, &self.values);
-            let unknowns = MatMut::from_column_major_slice_mut(x, size, columns);
+            let unknowns = MatMut::from_column_major_slice_mut(x, size, 1);
             factor.solve_in_place_with_conj(Conj::No, unknowns, Par::Seq, stack);
         } else {
             let pivoting = PermRef::new_checked(&self.forward, &self.inverse, size);
             let factor =
                 SupernodalIntranodeLbltRef::new(structure, &self.values, &self.subdiagonal, pivoting);
-            permute_columns(x, &self.forward, &mut self.permuted);
-            let unknowns = MatMut::from_column_major_slice_mut(x, size, columns);
+            permute(x, &self.forward, &mut self.permuted);
+            let unknowns = MatMut::from_column_major_slice_mut(x, size, 1);
             factor.solve_in_place_no_numeric_permute_with_conj(Conj::No, unknowns, Par::Seq, stack);
-            permute_columns(x, &self.inverse, &mut self.permuted);
+            permute(x, &self.inverse, &mut self.permuted);
         }
-        Ok(())
+    }
+
+    /// Solves for at most eight columns in one sweep over the factor.
+    fn solve_batch(&mut self, x: &mut [f64]) {
+        let size = self.diagonal.len();
+        self.rows.resize(size, [0.0; BATCH]);
+        for (k, row) in self.rows.iter_mut().enumerate() {
+            let values = x[k..].iter().step_by(size);
+            row.iter_mut().zip(values).for_each(|(number, value)| *number = *value);
+        }
+        let (nodes, values, order) = (&self.nodes, &self.values, &self.forward);
+        let factor = Factor { nodes, values, order, unit: !self.definite };
+        factor.solve(&mut self.rows);
+        if !self.definite {
+            solve_blocks(values, &self.diagonal, &self.subdiagonal, order, &mut self.rows);
+        }
+        factor.solve_transposed(&mut self.rows);
+        for (k, row) in self.rows.iter().enumerate() {
+            let values = x[k..].iter_mut().step_by(size);
+            values.zip(row).for_each(|(value, number)| *value = *number);
+        }
     }
 }
 
-/// `x[k] = x[order[k]]` in every column.
-fn permute_columns(x: &mut [f64], order: &[u32], work: &mut [f64]) {
-    for column in x.chunks_exact_mut(order.len()) {
-        work.copy_from_slice(column);
-        for (value, &source) in column.iter_mut().zip(order) {
-            *value = work[source as usize];
+/// Solves with the one- and two-row pivots of Bunch-Kaufman.
+fn solve_blocks(values: &[f64], diagonal: &[usize], subdiagonal: &[f64], order: &[u32], x: &mut [Row]) {
+    let mut k = 0;
+    while k < diagonal.len() {
+        let (first, coupling) = (values[diagonal[k]], subdiagonal[k]);
+        let i = order[k] as usize;
+        if coupling == 0.0 || k + 1 == diagonal.len() {
+            x[i].iter_mut().for_each(|x| *x /= first);
+            k += 1;
+        } else {
+            // divided by the coupling, which is not small beside the diagonal of a two-row pivot
+            let (a, b) = (first / coupling, values[diagonal[k + 1]] / coupling);
+            let scale = (coupling * (a * b - 1.0)).recip();
+            let j = order[k + 1] as usize;
+            for lane in 0..BATCH {
+                let (p, q) = (x[i][lane], x[j][lane]);
+                (x[i][lane], x[j][lane]) = ((b * p - q) * scale, (a * q - p) * scale);
+            }
+            k += 2;
         }
+    }
+}
+
+/// `x[k] = x[order[k]]`.
+fn permute(x: &mut [f64], order: &[u32], work: &mut [f64]) {
+    work.copy_from_slice(x);
+    for (value, &source) in x.iter_mut().zip(order) {
+        *value = work[source as usize];
     }
 }
 
@@ -238,14 +298,11 @@ fn supernodes(symbolic: &SymbolicCholesky<u32>) -> &SymbolicSupernodalCholesky<u
     }
 }
 
-/// Where each pivot lies: supernodes are dense columns, square block first, then the rows below.
-fn diagonal_positions(structure: &SymbolicSupernodalCholesky<u32>) -> Vec<usize> {
-    let mut positions = Vec::with_capacity(structure.nrows());
-    for s in 0..structure.n_supernodes() {
-        let columns = (structure.supernode_end()[s] - structure.supernode_begin()[s]) as usize;
-        let rows = columns + structure.supernode(s).pattern().len();
-        let begin = structure.col_ptr_for_val()[s] as usize;
-        positions.extend((0..columns).map(|column| begin + column * (rows + 1)));
-    }
-    positions
+/// The structure of the factor as [`super::sweep`] sees it.
+fn gather(structure: &SymbolicSupernodalCholesky<u32>) -> Supernodes {
+    Supernodes::new((0..structure.n_supernodes()).map(|s| {
+        let first = structure.supernode_begin()[s] as usize;
+        let width = structure.supernode_end()[s] as usize - first;
+        (first, width, structure.supernode(s).pattern(), structure.col_ptr_for_val()[s] as usize)
+    }))
 }

@@ -1,7 +1,7 @@
 //! Sparse linear systems: analyse a pattern once, factor many matrices, solve for many right-hand sides.
 //!
 //! This module and its submodules are the only ones that know the linear algebra library. Matrices
-//! are scaled before they are factored ([`scaling`]), every solution is checked against the matrix
+//! are scaled before they are factored, every solution is checked against the matrix
 //! and refined where needed, and all storage is kept between factorisations.
 
 mod error;

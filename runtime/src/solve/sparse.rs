@@ -109,17 +109,6 @@ impl SparsePattern {
         }
     }
 
-    /// Sums the magnitudes of the entries in every row of the whole matrix.
-    pub fn sum_rows(&self, values: &[f64], sums: &mut [f64]) {
-        sums.fill(0.0);
-        self.for_each(|position, row, column| {
-            sums[row] += values[position].abs();
-            if self.kind == MatrixKind::Symmetric && row != column {
-                sums[column] += values[position].abs();
-            }
-        });
-    }
-
     /// The pattern with its equations renumbered: new equation `k` is old equation `order[k]`.
     ///
     /// Also returns the position among the old entries of every new entry.

@@ -5,7 +5,7 @@
 
 use super::error::LinearError;
 use super::scaling::Scaling;
-use crate::solve::sparse::SparsePattern;
+use crate::solve::sparse::{MatrixKind, SparsePattern};
 
 /// Scaled and reordered copy `P R A C P^T` of an assembled matrix `A`.
 #[derive(Debug)]
@@ -74,16 +74,37 @@ impl ScaledMatrix {
     /// # Errors
     /// Entries that are not finite; rows and columns without a non-zero entry.
     pub fn load(&mut self, assembled: &[f64]) -> Result<(), LinearError> {
+        let mut finite = true;
         for (value, &source) in self.values.iter_mut().zip(&self.sources) {
             *value = assembled[source as usize];
+            finite &= value.is_finite();
         }
-        self.check_finite()?;
+        if !finite {
+            return Err(self.non_finite_entry());
+        }
         self.scaling.fit(&self.pattern, &self.values).map_err(|error| self.in_original_numbers(error))?;
-        let (rows, columns) = (&self.scaling.rows, &self.scaling.columns);
-        self.pattern.for_each(|position, row, column| self.values[position] *= rows[row] * columns[column]);
-        self.pattern.sum_rows(&self.values, &mut self.row_sums);
-        self.norm = self.row_sums.iter().copied().fold(0.0, f64::max);
+        self.scale();
         Ok(())
+    }
+
+    /// Scales the entries, and sums their magnitudes in the rows of the whole matrix.
+    fn scale(&mut self) {
+        let symmetric = self.pattern.kind() == MatrixKind::Symmetric;
+        let (row_factors, sums) = (&self.scaling.rows, &mut self.row_sums);
+        sums.fill(0.0);
+        for (column, column_factor) in self.scaling.columns.iter().enumerate() {
+            let range = self.pattern.column(column);
+            let rows = &self.pattern.rows()[range.clone()];
+            let mut mirrored = 0.0;
+            for (&row, value) in rows.iter().zip(&mut self.values[range]) {
+                let row = row as usize;
+                *value *= row_factors[row] * column_factor;
+                sums[row] += value.abs();
+                mirrored += if row == column { 0.0 } else { value.abs() };
+            }
+            sums[column] += if symmetric { mirrored } else { 0.0 };
+        }
+        self.norm = sums.iter().copied().fold(0.0, f64::max);
     }
 
     /// Replaces a pivot position by the original equation number.
@@ -139,10 +160,8 @@ impl ScaledMatrix {
         }
     }
 
-    fn check_finite(&self) -> Result<(), LinearError> {
-        if self.values.iter().all(|value| value.is_finite()) {
-            return Ok(());
-        }
+    /// The last entry that is not finite.
+    fn non_finite_entry(&self) -> LinearError {
         let mut found = LinearError::NoEquations;
         self.pattern.for_each(|position, row, column| {
             if !self.values[position].is_finite() {
@@ -150,6 +169,6 @@ impl ScaledMatrix {
                     LinearError::NonFiniteEntry { row: self.equation(row), column: self.equation(column) };
             }
         });
-        Err(found)
+        found
     }
 }

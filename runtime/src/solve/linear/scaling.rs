@@ -49,12 +49,7 @@ impl Scaling {
             *factor = if diagonal > 0.0 { diagonal.sqrt().recip() } else { 1.0 };
         }
         for _ in 0..SWEEPS {
-            self.largest.fill(0.0);
-            pattern.for_each(|position, row, column| {
-                let entry = (self.rows[row] * values[position] * self.rows[column]).abs();
-                self.largest[row] = self.largest[row].max(entry);
-                self.largest[column] = self.largest[column].max(entry);
-            });
+            self.find_largest(pattern, values);
             if let Some(equation) = self.largest.iter().position(|&entry| entry == 0.0) {
                 return Err(LinearError::EmptyRow { equation });
             }
@@ -65,6 +60,22 @@ impl Scaling {
         }
         self.columns.copy_from_slice(&self.rows);
         Ok(())
+    }
+
+    /// Largest magnitude in every row of the scaled symmetric matrix.
+    fn find_largest(&mut self, pattern: &SparsePattern, values: &[f64]) {
+        self.largest.fill(0.0);
+        for (column, column_factor) in self.rows.iter().enumerate() {
+            let range = pattern.column(column);
+            let mut mirrored = 0.0_f64;
+            for (&row, value) in pattern.rows()[range.clone()].iter().zip(&values[range]) {
+                let entry = (self.rows[row as usize] * value * column_factor).abs();
+                let largest = &mut self.largest[row as usize];
+                *largest = largest.max(entry);
+                mirrored = mirrored.max(entry);
+            }
+            self.largest[column] = self.largest[column].max(mirrored);
+        }
     }
 
     /// Unit row maxima, then unit column maxima.

@@ -165,8 +165,8 @@ impl<'a, const WIDTH: usize> Panel<'a, WIDTH> {
         }
         for (offset, equation) in self.rows() {
             let mut value = Lane::load(s, &x[equation], o);
-            for k in 0..WIDTH {
-                value = Lane::splat(s, -self.columns[k][offset]).mul_add(y[k], value);
+            for (column, y) in self.columns.iter().zip(y) {
+                value = Lane::splat(s, -column[offset]).mul_add(y, value);
             }
             value.store(&mut x[equation], o);
         }
@@ -178,8 +178,8 @@ impl<'a, const WIDTH: usize> Panel<'a, WIDTH> {
         let mut y = self.load(s, o, x);
         for (offset, equation) in self.rows() {
             let value = Lane::load(s, &x[equation], o);
-            for k in 0..WIDTH {
-                y[k] = Lane::splat(s, -self.columns[k][offset]).mul_add(value, y[k]);
+            for (column, y) in self.columns.iter().zip(&mut y) {
+                *y = Lane::splat(s, -column[offset]).mul_add(value, *y);
             }
         }
         for k in (0..WIDTH).rev() {

@@ -271,10 +271,11 @@ fn solve_blocks(values: &[f64], diagonal: &[usize], subdiagonal: &[f64], order: 
             let (a, b) = (first / coupling, values[diagonal[k + 1]] / coupling);
             let scale = (coupling * (a * b - 1.0)).recip();
             let j = order[k + 1] as usize;
-            for lane in 0..BATCH {
-                let (p, q) = (x[i][lane], x[j][lane]);
-                (x[i][lane], x[j][lane]) = ((b * p - q) * scale, (a * q - p) * scale);
+            let (mut upper, mut lower) = (x[i], x[j]);
+            for (p, q) in upper.iter_mut().zip(&mut lower) {
+                (*p, *q) = ((b * *p - *q) * scale, (a * *q - *p) * scale);
             }
+            (x[i], x[j]) = (upper, lower);
             k += 2;
         }
     }

@@ -48,7 +48,10 @@ fn dominant(size: u32, kind: MatrixKind, sign: impl Fn(usize) -> f64) -> System 
     let pattern = random_pattern(size, kind, &mut noise);
     let mut values = noise.vector(pattern.entries());
     let mut sums = vec![0.0; size as usize];
-    pattern.sum_rows(&values, &mut sums);
+    pattern.for_each(|position, row, column| {
+        sums[row] += f64::abs(values[position]);
+        sums[column] += f64::abs(values[position]);
+    });
     pattern.for_each(|position, row, column| {
         if row == column {
             values[position] = sign(row) * (1.0 + sums[row]);

@@ -13,6 +13,7 @@ pub mod observer;
 pub mod output;
 pub mod record;
 pub mod settings;
+pub mod simulation;
 pub mod solve;
 pub mod system;
 pub mod time;

@@ -2,7 +2,9 @@
 
 use crate::error::SolveError;
 use crate::generated::{Event, Record};
+use crate::time::events::Firing;
 use crate::time::history::{blend, interpolation_weights};
+use crate::time::march::Statistics;
 
 /// How a run ended.
 #[derive(Clone, Debug)]
@@ -23,10 +25,8 @@ pub struct RunRecord {
     steps: Vec<Vec<f64>>,
     /// Index of the first point of the smooth stretch that each point belongs to.
     stretches: Vec<usize>,
-    /// First time of each event.
-    first: Vec<Option<f64>>,
-    /// The documented event that fired last.
-    told: Option<usize>,
+    fired: Vec<Firing>,
+    statistics: Statistics,
     end: End,
 }
 
@@ -38,8 +38,8 @@ impl RunRecord {
             times: Vec::new(),
             steps: Vec::new(),
             stretches: Vec::new(),
-            first: vec![None; events.len()],
-            told: None,
+            fired: Vec::new(),
+            statistics: Statistics::default(),
             end: End::Finished,
         }
     }
@@ -59,11 +59,23 @@ impl RunRecord {
     }
 
     /// Notes that an event fired.
-    pub fn fire(&mut self, event: usize, time: f64) {
-        self.first[event].get_or_insert(time);
-        if !self.events[event].doc.is_empty() {
-            self.told = Some(event);
-        }
+    pub fn fire(&mut self, firing: Firing) {
+        self.fired.push(firing);
+    }
+
+    /// What fired, in the order in which it did.
+    pub fn fired(&self) -> &[Firing] {
+        &self.fired
+    }
+
+    /// Notes what the run took so far.
+    pub fn count(&mut self, statistics: Statistics) {
+        self.statistics = statistics;
+    }
+
+    /// What the run took.
+    pub fn statistics(&self) -> Statistics {
+        self.statistics
     }
 
     /// Notes how the run ended.
@@ -87,10 +99,13 @@ impl RunRecord {
     /// The outcome in one word: `diverged` if the equations could not be solved; else the event that stopped the run; else the documented event
     /// that fired last; else `finished`.
     pub fn outcome(&self) -> &'static str {
-        match (&self.end, &self.told) {
-            (End::Diverged(_), _) => "diverged",
-            (End::Stopped(event), _) | (End::Finished, Some(event)) => self.events[*event].name,
-            (End::Finished, None) => "finished",
+        let told = |firing: &&Firing| !self.events[firing.event].doc.is_empty();
+        match &self.end {
+            End::Diverged(_) => "diverged",
+            End::Stopped(event) => self.events[*event].name,
+            End::Finished => {
+                self.fired.iter().rfind(told).map_or("finished", |firing| self.events[firing.event].name)
+            }
         }
     }
 
@@ -122,7 +137,7 @@ impl RunRecord {
 impl Record for RunRecord {
     fn event_time(&self, name: &str) -> Option<f64> {
         let event = self.events.iter().position(|event| event.name == name)?;
-        self.first[event]
+        self.fired.iter().find(|firing| firing.event == event).map(|firing| firing.time)
     }
 
     fn steps(&self) -> &[Vec<f64>] {
@@ -188,10 +203,9 @@ mod tests {
     fn the_outcome_names_what_happened() {
         let mut record = parabola();
         assert_eq!(record.outcome(), "finished");
-        record.fire(0, 1.0);
+        record.fire(Firing { event: 0, time: 1.0 });
         assert_eq!(record.outcome(), "finished", "an event without documentation is no outcome");
-        record.fire(1, 2.0);
-        record.fire(1, 2.5);
+        [2.0, 2.5].iter().for_each(|&time| record.fire(Firing { event: 1, time }));
         assert_eq!((record.outcome(), record.event_time("passed")), ("passed", Some(2.0)));
         record.finish(End::Stopped(2));
         assert_eq!(record.outcome(), "stuck");

@@ -53,18 +53,18 @@ pub struct Point {
     pub rates: Vec<f64>,
 }
 
-/// Steps from `start` over `size`; `predict` gives the first guess of a stage at its time. Returns the end of the step and the Newton
-/// iterations it took.
+/// Steps from `start` over `size`, to the end of the step; `predict` gives the first guess of a stage at its time. Newton iterations are added to
+/// `iterations`, those of a failed stage too.
 pub fn advance(
     method: &Tableau,
     system: &mut dyn ImplicitSystem,
     start: &Point,
     size: f64,
     predict: impl Fn(f64) -> Vec<f64>,
-) -> Result<(Point, usize), SolveError> {
+    iterations: &mut usize,
+) -> Result<Point, SolveError> {
     let mut end = start.clone();
     let mut slopes: Vec<Vec<f64>> = Vec::new();
-    let mut iterations = 0;
     for row in method.rows {
         let mut base = start.values.clone();
         for (factor, slope) in row.iter().zip(&slopes) {
@@ -74,10 +74,11 @@ pub fn advance(
         let stage =
             Stage { time: start.time + node * size, alpha: 1.0 / (size * method.diagonal), base: &base };
         let mut values = predict(stage.time);
-        iterations += system.solve_stage(&stage, &mut values)?;
+        *iterations +=
+            system.solve_stage(&stage, &mut values).inspect_err(|e| *iterations += e.iterations)?;
         let rates = stage.rates(&values);
         slopes.push(rates.clone());
         end = Point { time: stage.time, values, rates };
     }
-    Ok((end, iterations))
+    Ok(end)
 }

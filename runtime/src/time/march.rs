@@ -21,6 +21,17 @@ pub struct Proposal {
     pub iterations: usize,
 }
 
+/// What a march took.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Statistics {
+    /// Accepted steps.
+    pub accepted: usize,
+    /// Attempts that did not converge or were not accurate enough, and steps cut short by events.
+    pub rejected: usize,
+    /// Newton iterations of all attempts.
+    pub iterations: usize,
+}
+
 /// Marches one system through time.
 pub struct March {
     method: &'static Tableau,
@@ -28,6 +39,7 @@ pub struct March {
     magnitudes: Magnitudes,
     history: History,
     settings: Solve,
+    statistics: Statistics,
 }
 
 impl March {
@@ -40,11 +52,12 @@ impl March {
     ) -> Result<Self, SolveError> {
         let mut control = Control::new(settings.min_step, settings.max_step, settings.step_tolerance);
         let mut magnitudes = Magnitudes::new(system.groups());
-        let start = with_rates(system, settings, time, y)?;
+        let mut statistics = Statistics::default();
+        let start = with_rates(system, settings, time, y, &mut statistics.iterations)?;
         magnitudes.see(&start.values);
         control.restart(magnitudes.time_scale(&start.rates));
         let method = tableau(settings.integrator);
-        Ok(Self { method, control, magnitudes, history: History::new(start), settings })
+        Ok(Self { method, control, magnitudes, history: History::new(start), settings, statistics })
     }
 
     /// Starts a new smooth stretch, as after a jump.
@@ -54,7 +67,7 @@ impl March {
         time: f64,
         y: Vec<f64>,
     ) -> Result<(), SolveError> {
-        let start = with_rates(system, self.settings, time, y)?;
+        let start = with_rates(system, self.settings, time, y, &mut self.statistics.iterations)?;
         self.magnitudes.see(&start.values);
         self.control.restart(self.magnitudes.time_scale(&start.rates));
         self.history = History::new(start);
@@ -95,14 +108,17 @@ impl March {
 
     /// A step with its relative error and the order of that estimate.
     fn attempt(
-        &self,
+        &mut self,
         system: &mut dyn ImplicitSystem,
         size: f64,
         limit: f64,
     ) -> Result<(Proposal, f64, usize), SolveError> {
-        let start = self.last();
+        let mut iterations = 0;
         let predict = |time: f64| self.history.extrapolate(time, self.method.order);
-        let (mut end, iterations) = advance(self.method, system, start, size, predict)?;
+        let end = advance(self.method, system, self.last(), size, predict, &mut iterations);
+        self.statistics.rejected += 1;
+        self.statistics.iterations += iterations;
+        let mut end = end?;
         if (end.time - limit).abs() < 1e-9 * size {
             end.time = limit;
         }
@@ -115,8 +131,15 @@ impl March {
 
     /// Takes a proposed step.
     pub fn accept(&mut self, proposal: Proposal) {
+        self.statistics.accepted += 1;
+        self.statistics.rejected -= 1;
         self.magnitudes.see(&proposal.end.values);
         self.history.push(proposal.end);
+    }
+
+    /// What it took so far.
+    pub fn statistics(&self) -> Statistics {
+        self.statistics
     }
 
     /// Unknowns and rates at a time inside a proposed step, interpolated between its end and the last accepted points.
@@ -140,13 +163,14 @@ fn with_rates(
     settings: Solve,
     time: f64,
     values: Vec<f64>,
+    iterations: &mut usize,
 ) -> Result<Point, SolveError> {
     let start = Point { time, rates: vec![0.0; values.len()], values };
     let euler = tableau(Integrator::BackwardEuler);
     let mut size = (TRIAL * settings.max_step).max(settings.min_step);
     loop {
-        match advance(euler, system, &start, size, |_| start.values.clone()) {
-            Ok((end, _)) => return Ok(Point { rates: end.rates, ..start }),
+        match advance(euler, system, &start, size, |_| start.values.clone(), iterations) {
+            Ok(end) => return Ok(Point { rates: end.rates, ..start }),
             Err(error) if 0.5 * size < settings.min_step => {
                 return Err(SolveError { time, step: size, ..error });
             }

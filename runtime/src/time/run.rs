@@ -1,10 +1,10 @@
 //! A whole run: steps, events and what they do, output, and the record of it all.
 
-use super::ImplicitSystem;
 use super::events::{Firing, StepView, Watcher};
 use super::integrator::Point;
-use super::march::{March, Proposal};
+use super::march::{March, Proposal, Statistics};
 use super::output::Outputs;
+use super::{ImplicitSystem, Stage};
 use crate::error::{Error, SolveError};
 use crate::generated::{Action, Event, Frames, Solve, Table};
 use crate::observer::{Fired, Observer, Step};
@@ -56,7 +56,9 @@ pub fn run(
     run.record.begin_stretch(start, globals);
     run.outputs.emit(run.system, &run.record, |_| run.march.last().clone(), run.observer)?;
     while run.march.last().time < end {
-        if let Some(how) = run.step(end)? {
+        let ended = run.step(end)?;
+        run.record.count(run.march.statistics());
+        if let Some(how) = ended {
             run.record.finish(how);
             break;
         }
@@ -71,13 +73,14 @@ fn stationary(
     observer: &mut dyn Observer,
 ) -> Result<RunRecord, Error> {
     let rates = vec![0.0; y.len()];
-    let iterations = system.solve_stage(&super::Stage { time: 0.0, alpha: 0.0, base: &rates }, &mut y)?;
+    let iterations = system.solve_stage(&Stage { time: 0.0, alpha: 0.0, base: &rates }, &mut y)?;
     let point = Point { time: 0.0, values: y, rates };
     let globals = system.observe(&point);
     observer.step(&Step { number: 1, time: 0.0, size: 0.0, iterations, globals: &globals })?;
     let mut record = RunRecord::new(plan.events);
     let mut outputs = Outputs::new(plan.tables, plan.frames, 0.0, &globals);
     record.begin_stretch(0.0, globals);
+    record.count(Statistics { accepted: 1, rejected: 0, iterations });
     outputs.emit(system, &record, |_| point.clone(), observer)?;
     Ok(record)
 }
@@ -172,9 +175,9 @@ impl Run<'_> {
     }
 
     fn tell(&mut self, fired: &[Firing]) -> Result<(), Error> {
-        for &Firing { event, time } in fired {
-            self.record.fire(event, time);
-            self.observer.fired(&Fired { event, time })?;
+        for &firing in fired {
+            self.record.fire(firing);
+            self.observer.fired(&Fired { event: firing.event, time: firing.time })?;
         }
         Ok(())
     }

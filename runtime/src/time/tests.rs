@@ -121,7 +121,7 @@ fn error_after(system: &mut Small, integrator: Integrator, start: Vec<f64>, exac
     let size = 2.0 / steps as f64;
     let mut point = Point { time: 0.0, rates: vec![0.0; start.len()], values: start };
     for _ in 0..steps {
-        point = advance(tableau(integrator), system, &point, size, |_| point.values.clone()).unwrap().0;
+        point = advance(tableau(integrator), system, &point, size, |_| point.values.clone(), &mut 0).unwrap();
     }
     (point.values[0] - exact).abs()
 }
@@ -156,7 +156,7 @@ fn a_stiff_component_is_damped_in_one_step() {
     let mut system = Small::new(&[true], |_, y, rates| vec![rates[0] + 1e8 * y[0]]);
     let start = Point { time: 0.0, values: vec![1.0], rates: vec![0.0] };
     for integrator in [Integrator::Sdirk2, Integrator::BackwardEuler] {
-        let end = advance(tableau(integrator), &mut system, &start, 1.0, |_| vec![0.0]).unwrap().0;
+        let end = advance(tableau(integrator), &mut system, &start, 1.0, |_| vec![0.0], &mut 0).unwrap();
         assert!(end.values[0].abs() < 1e-6, "{}", end.values[0]);
     }
 }
@@ -254,6 +254,8 @@ fn a_failed_solve_halves_the_step_and_gives_up_at_the_smallest() {
     let (record, notes) = run_small(&mut system, plan(smooth, &[]), &[1.0, 0.0]);
     let error = record.failure().expect("there is no way past the gap");
     assert_eq!(record.outcome(), "diverged");
+    let rejected = record.statistics().rejected;
+    assert!((18..25).contains(&rejected), "{rejected} halvings lead from 0.5 to 1e-6");
     assert!(error.time < 3.05 && error.time > 3.0499 && error.step < 2e-6, "{} {}", error.time, error.step);
     assert_eq!(record.steps().len(), notes.sizes.len() + 1, "what was done is kept");
 }

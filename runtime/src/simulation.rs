@@ -1,0 +1,144 @@
+//! A compiled model with parameter values, ready to run: geometry, mesh, discretised system, run, record.
+
+use crate::error::{Cause, Error, SolveError};
+use crate::generated::{Program, Solve};
+use crate::mesh::{Mesh, MeshError};
+use crate::observer::Observer;
+use crate::record::{End, RunRecord};
+use crate::settings;
+use crate::system::{At, FrameSampler, StageProblem, System};
+use crate::time::integrator::Point;
+use crate::time::run::{Plan, run};
+use crate::time::{Group, ImplicitSystem, Stage};
+
+/// A simulation of one model with one set of parameters.
+pub struct Simulation {
+    discretised: Discretised,
+    record: RunRecord,
+}
+
+impl Simulation {
+    /// Makes the mesh and the discretised system. `parameters` are the values of all parameters in the model's order and units.
+    ///
+    /// # Errors
+    /// A parameter out of its range, a geometry that is not valid with these parameters, a mesh that cannot be made, or a model that does not fit it.
+    pub fn new(program: &'static Program, parameters: &[f64]) -> Result<Self, Error> {
+        let mut g = vec![0.0; program.layout.length];
+        g[program.layout.parameters[0]..program.layout.parameters[1]].copy_from_slice(parameters);
+        settings::check(program, &g, parameters)?;
+        let geometry = (program.geometry)(&g).map_err(|faults| mesh_error(MeshError::Geometry(faults)))?;
+        let mesh = Mesh::generate(&geometry, &(program.sizing)(&g)).map_err(mesh_error)?;
+        Self::on_mesh(program, parameters, mesh)
+    }
+
+    /// The same on a mesh from elsewhere.
+    ///
+    /// # Errors
+    /// [`Error::Model`] if the model names places that the mesh does not have.
+    pub fn on_mesh(program: &'static Program, parameters: &[f64], mesh: Mesh) -> Result<Self, Error> {
+        let system = System::new(program, parameters, mesh)?;
+        let frames = program.frames.iter().map(|f| FrameSampler::new(f, &system.mesh));
+        let frames = frames.collect::<Result<_, _>>()?;
+        let discretised = Discretised { system, frames, definite: None };
+        Ok(Self { discretised, record: RunRecord::new(program.events) })
+    }
+
+    /// Start and end of a run that ends at `until` at the latest [internal time]; (0, 0) for a stationary model.
+    pub fn span(&self, until: Option<f64>) -> (f64, f64) {
+        let (start, end) = self.discretised.system.settings.time.unwrap_or((0.0, 0.0));
+        (start, until.map_or(end, |until| end.min(until)))
+    }
+
+    /// Runs from the start to the end of the model's time, or `until` if that is earlier. Returns the [outcome](RunRecord::outcome).
+    ///
+    /// # Errors
+    /// There is no consistent start, the equations could not be solved on the way, or the observer failed. After a failed solve the record holds
+    /// what was reached, and all output up to there was written.
+    pub fn run(&mut self, observer: &mut dyn Observer, until: Option<f64>) -> Result<&'static str, Error> {
+        let program = self.discretised.system.program;
+        let settings = self.discretised.system.settings;
+        let settings = Solve { time: settings.time.map(|_| self.span(until)), ..settings };
+        let Program { events, tables, frames, .. } = program;
+        observer.begin(&self.discretised.system.mesh)?;
+        self.discretised.definite = None;
+        let y = self.discretised.system.start()?;
+        self.record = run(&mut self.discretised, Plan { settings, events, tables, frames }, y, observer)?;
+        match self.record.end() {
+            End::Diverged(error) => Err(Error::Solve(error.clone())),
+            End::Finished | End::Stopped(_) => Ok(self.record.outcome()),
+        }
+    }
+
+    /// Record of the last run, empty before the first.
+    pub fn record(&self) -> &RunRecord {
+        &self.record
+    }
+
+    /// The discretised model.
+    pub fn system(&self) -> &System {
+        &self.discretised.system
+    }
+}
+
+/// Faults of the geometry are told as such.
+fn mesh_error(error: MeshError) -> Error {
+    match error {
+        MeshError::Geometry(faults) => Error::Geometry(faults.iter().map(ToString::to_string).collect()),
+        other => Error::Mesh(other.to_string()),
+    }
+}
+
+/// The discretised model as the time integration sees it.
+struct Discretised {
+    system: System,
+    frames: Vec<FrameSampler>,
+    /// Negative pivots of a stable tangent: those of the first stage solved, none unless the model is a saddle point problem.
+    definite: Option<usize>,
+}
+
+impl ImplicitSystem for Discretised {
+    fn groups(&self) -> Vec<Group> {
+        let unknowns = &self.system.unknowns;
+        let fields =
+            unknowns.fields.iter().map(|f| Group { range: f.first..f.first + f.count(), tested: true });
+        let differential = self.system.program.state_system.as_ref().map_or(&[][..], |s| s.differential);
+        let first = unknowns.states;
+        let state = |(k, &tested): (usize, &bool)| Group { range: first + k..first + k + 1, tested };
+        fields.chain(differential.iter().enumerate().map(state)).collect()
+    }
+
+    fn solve_stage(&mut self, stage: &Stage<'_>, y: &mut [f64]) -> Result<usize, SolveError> {
+        let problem = StageProblem { time: stage.time, alpha: stage.alpha, base: stage.base };
+        let report = self.system.solve_stage(&problem, y)?;
+        let stable = *self.definite.get_or_insert(report.negative_pivots);
+        if report.negative_pivots > stable {
+            return Err(SolveError {
+                cause: Cause::Unstable(report.negative_pivots - stable),
+                time: stage.time,
+                step: 0.0,
+                iterations: report.iterations,
+                residual: report.residual,
+                place: String::from("none: the equations hold, but the equilibrium does not attract"),
+                terms: Vec::new(),
+            });
+        }
+        Ok(report.iterations)
+    }
+
+    /// The states that were not set follow with the first step from here.
+    fn set_states(&mut self, _: f64, y: &mut [f64], values: &[(usize, f64)]) -> Result<(), SolveError> {
+        for &(state, value) in values {
+            y[self.system.unknowns.states + state] = value;
+        }
+        Ok(())
+    }
+
+    fn observe(&mut self, point: &Point) -> Vec<f64> {
+        self.system.observe(point.time, &point.values, &point.rates)
+    }
+
+    fn sample(&mut self, frame: usize, point: &Point, g: &[f64]) -> Vec<Vec<f64>> {
+        let at = At { y: &point.values, rates: &point.rates, g, alpha: 0.0 };
+        self.frames[frame].sample(&self.system.mesh, &self.system.unknowns, at)
+    }
+}

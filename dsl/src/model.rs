@@ -285,7 +285,12 @@ pub enum ExprKind {
     Diff(Box<Expr>, Box<Expr>),
     /// `frozen(e)`: held in the variation, followed in the tangent.
     Frozen(Box<Expr>),
-    MatchValue { scrutinee: Box<Expr>, arms: Vec<Arm>, otherwise: Box<Expr>, smoothness: Smoothness },
+    MatchValue {
+        scrutinee: Box<Expr>,
+        arms: Vec<Arm>,
+        otherwise: Box<Expr>,
+        smoothness: Smoothness,
+    },
     /// `match region { core => a, .. }`.
     MatchRegion(Vec<(RegionId, Expr)>, Option<Box<Expr>>),
     /// `mean(e on D)` and the like.
@@ -409,6 +414,7 @@ pub struct Param {
 
 /// Allowed values.
 #[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant, reason = "a model has few of them")]
 pub enum Bounds {
     /// `in a .. b`, both included.
     Range(Expr, Expr),
@@ -719,12 +725,19 @@ pub enum Check {
     /// `expect condition;`
     Holds(Expr, Span),
     /// `expect a ~= b within tolerance [%];`
-    Near { value: Expr, expected: Expr, tolerance: Expr, percent: bool, span: Span },
+    Near {
+        value: Expr,
+        expected: Expr,
+        tolerance: Expr,
+        percent: bool,
+        span: Span,
+    },
 }
 
 /// Values of a loop.
 #[derive(Clone, Debug)]
 #[allow(missing_docs)]
+#[allow(clippy::large_enum_variant, reason = "a model has few of them")]
 pub enum Values {
     Range { from: Expr, to: Expr, by: Expr },
     Set(Vec<Expr>),

@@ -69,11 +69,19 @@ pub(super) fn check(model: &Model, sources: &SourceMap, sink: &mut Sink) {
         let message = format!("{count}: nothing determines `{}`", state.name);
         let mut diagnostic = Diagnostic::error(code, state.span, message);
         for equation in system.equations.iter().filter(|equation| equation.states.contains(id)) {
-            let other = system.matched.iter().position(|at| at.is_some_and(|at| system.equations[at].span == equation.span));
-            let other = other.map_or(String::new(), |other| format!("this one determines `{}`", model.states[other].name));
+            let other = system
+                .matched
+                .iter()
+                .position(|at| at.is_some_and(|at| system.equations[at].span == equation.span));
+            let other = other
+                .map_or(String::new(), |other| format!("this one determines `{}`", model.states[other].name));
             diagnostic = diagnostic.label(equation.span, other);
         }
-        sink.push(diagnostic.help("write one more equation `a == b;` in a physics block, or an energy with the state in it"));
+        sink.push(
+            diagnostic.help(
+                "write one more equation `a == b;` in a physics block, or an energy with the state in it",
+            ),
+        );
     }
     for at in idle {
         sink.push(idle_equation(model, &system.equations[at], &count, undetermined.is_empty(), sources));
@@ -85,17 +93,28 @@ fn counted(n: usize, one: &str, many: &str) -> String {
     format!("{n} {}", if n == 1 { one } else { many })
 }
 
-fn idle_equation(model: &Model, equation: &Equation, count: &str, too_many: bool, sources: &SourceMap) -> Diagnostic {
+fn idle_equation(
+    model: &Model,
+    equation: &Equation,
+    count: &str,
+    too_many: bool,
+    sources: &SourceMap,
+) -> Diagnostic {
     let text = sources.slice(equation.span);
     if equation.states.is_empty() {
         return Diagnostic::error(Code::Unmatched, equation.span, "there is no state in this equation")
             .help("a condition on fields is a `hold` or a `residual`");
     }
     let code = if too_many { Code::TooManyEquations } else { Code::Unmatched };
-    let names: Vec<String> = equation.states.iter().map(|id| format!("`{}`", model.states[id.0].name)).collect();
+    let names: Vec<String> =
+        equation.states.iter().map(|id| format!("`{}`", model.states[id.0].name)).collect();
     let subject = if names.len() == 1 { "is" } else { "are" };
     Diagnostic::error(code, equation.span, format!("{count}: nothing is left for this one to determine"))
-        .help(format!("{} {subject} determined by other equations already; `{}` is one too many", names.join(", "), text.trim_end_matches(';')))
+        .help(format!(
+            "{} {subject} determined by other equations already; `{}` is one too many",
+            names.join(", "),
+            text.trim_end_matches(';')
+        ))
 }
 
 /// Every field is varied in an energy, or worked on by a load, or tested.
@@ -120,8 +139,10 @@ fn fields(model: &Model, sink: &mut Sink) {
         let _ = at;
         let message = format!("nothing determines field `{}`", field.name);
         sink.push(
-            Diagnostic::error(Code::Unbalanced, field.span, message)
-                .help(format!("write an energy with `{0}` in it, or a residual with `test({0})`", field.name)),
+            Diagnostic::error(Code::Unbalanced, field.span, message).help(format!(
+                "write an energy with `{0}` in it, or a residual with `test({0})`",
+                field.name
+            )),
         );
     }
 }
@@ -131,7 +152,9 @@ impl System {
         let mut equations = Vec::new();
         let mut varied = BTreeSet::new();
         let mut rates = BTreeSet::new();
-        for (block, statements) in model.blocks.iter().enumerate().map(|(at, block)| (BlockId(at), &block.statements)) {
+        for (block, statements) in
+            model.blocks.iter().enumerate().map(|(at, block)| (BlockId(at), &block.statements))
+        {
             for (statement, item) in statements.iter().enumerate() {
                 match &item.kind {
                     StatementKind::Equation(a, b) => {
@@ -155,7 +178,8 @@ impl System {
     /// Matches first the states that no energy balances; among them those with a rate and those in many equations.
     fn assign(&mut self, rates: &BTreeSet<StateId>) {
         let mut order: Vec<StateId> = (0..self.matched.len()).map(StateId).collect();
-        let uses = |id: StateId| self.equations.iter().filter(|equation| equation.states.contains(&id)).count();
+        let uses =
+            |id: StateId| self.equations.iter().filter(|equation| equation.states.contains(&id)).count();
         order.sort_by_key(|id| {
             (self.varied.contains(id), !rates.contains(id), std::cmp::Reverse(uses(*id)), *id)
         });

@@ -37,7 +37,8 @@ impl Checker<'_> {
                 Ok(Expr { kind, ty: Type::Condition, span })
             }
             ast::ExprKind::Lasting { condition, time } => {
-                let (condition, time) = (self.condition(condition, env), self.typed(time, &Type::TIME, "the duration", env));
+                let (condition, time) =
+                    (self.condition(condition, env), self.typed(time, &Type::TIME, "the duration", env));
                 let kind = ExprKind::Held(Box::new(condition?), Box::new(time?));
                 Ok(Expr { kind, ty: Type::Condition, span })
             }
@@ -45,9 +46,11 @@ impl Checker<'_> {
             ast::ExprKind::Text(_) => {
                 Err(self.misplaced(span, "a text is no value", "texts name files and stand in `warn(..)`"))
             }
-            ast::ExprKind::Hole => {
-                Err(self.misplaced(span, "`_` leaves an argument of a function open", "it stands in calls only: `Psi(_, G)`"))
-            }
+            ast::ExprKind::Hole => Err(self.misplaced(
+                span,
+                "`_` leaves an argument of a function open",
+                "it stands in calls only: `Psi(_, G)`",
+            )),
         }
     }
 
@@ -74,7 +77,8 @@ impl Checker<'_> {
         }
         let words = self.words(&condition.ty);
         Err(self.report(
-            Diagnostic::error(Code::ShapeMismatch, e.span, "a condition is needed here").here(format!("this is {words}")),
+            Diagnostic::error(Code::ShapeMismatch, e.span, "a condition is needed here")
+                .here(format!("this is {words}")),
         ))
     }
 
@@ -87,7 +91,9 @@ impl Checker<'_> {
         let (kind, ty) = match symbol {
             Symbol::Param(id) => (ExprKind::Param(id), scalar(self.param(id)?.dimension)),
             Symbol::Let(at) => match self.meaning(at, span)? {
-                Meaning::Value(id) => (ExprKind::Let(id), self.let_value(id).map_or(Type::NUMBER, |e| e.ty.clone())),
+                Meaning::Value(id) => {
+                    (ExprKind::Let(id), self.let_value(id).map_or(Type::NUMBER, |e| e.ty.clone()))
+                }
                 Meaning::Domain(_) => return Err(self.no_value(name, "a domain", span)),
                 Meaning::Pair(_) => return Err(self.no_value(name, "a contact pair", span)),
             },
@@ -97,7 +103,9 @@ impl Checker<'_> {
             Symbol::Coordinate(i) => (ExprKind::Coordinate(i), Type::LENGTH),
             Symbol::Word(Word::Time) => (ExprKind::Time, Type::TIME),
             Symbol::Word(Word::Pi) => (ExprKind::Number(std::f64::consts::PI), Type::NUMBER),
-            Symbol::Word(Word::Identity) => (ExprKind::Identity, Type::Value(Shape::Tensor, Dimension::NUMBER)),
+            Symbol::Word(Word::Identity) => {
+                (ExprKind::Identity, Type::Value(Shape::Tensor, Dimension::NUMBER))
+            }
             Symbol::Path(_) | Symbol::Region(_) | Symbol::Block(_) | Symbol::Event(_) | Symbol::Word(_) => {
                 return Err(self.no_value(name, symbol.words(), span));
             }
@@ -108,7 +116,9 @@ impl Checker<'_> {
 
     fn bound(&self, binding: &Binding, span: Span) -> Checked<Expr> {
         match binding {
-            Binding::Local(id) => Ok(Expr { kind: ExprKind::Local(*id), ty: self.locals[id.0].1.clone(), span }),
+            Binding::Local(id) => {
+                Ok(Expr { kind: ExprKind::Local(*id), ty: self.locals[id.0].1.clone(), span })
+            }
             Binding::Let(id) => {
                 let ty = self.let_value(*id).map_or(Type::NUMBER, |e| e.ty.clone());
                 Ok(Expr { kind: ExprKind::Let(*id), ty, span })
@@ -146,10 +156,12 @@ impl Checker<'_> {
         let names = self.scopes[env.module].iter().map(|(known, _)| known);
         let words = Word::ALL.into_iter().map(|(known, _)| known);
         let candidates: Vec<&str> = locals.chain(names).chain(words).collect();
-        let mut diagnostic =
-            Diagnostic::error(Code::UnknownName, span, format!("`{name}` is not declared")).help_did_you_mean(name, candidates);
+        let mut diagnostic = Diagnostic::error(Code::UnknownName, span, format!("`{name}` is not declared"))
+            .help_did_you_mean(name, candidates);
         if ansatz_units::Unit::find(name).is_some() {
-            diagnostic = diagnostic.help(format!("`{name}` is a unit only right behind a number; longer units stand in brackets"));
+            diagnostic = diagnostic.help(format!(
+                "`{name}` is a unit only right behind a number; longer units stand in brackets"
+            ));
         }
         self.report(diagnostic)
     }
@@ -172,7 +184,14 @@ impl Checker<'_> {
         }
     }
 
-    fn compare(&mut self, op: CompareOp, left: &ast::Expr, right: &ast::Expr, span: Span, env: &Env) -> Checked<Expr> {
+    fn compare(
+        &mut self,
+        op: CompareOp,
+        left: &ast::Expr,
+        right: &ast::Expr,
+        span: Span,
+        env: &Env,
+    ) -> Checked<Expr> {
         if op == CompareOp::Equal && self.is_word(left, Word::Outcome, env) {
             let id = self.event(right, env)?;
             return Ok(Expr { kind: ExprKind::OutcomeIs(id), ty: Type::Condition, span });
@@ -202,7 +221,11 @@ impl Checker<'_> {
     /// The event that a name stands for.
     fn event(&mut self, e: &ast::Expr, env: &Env) -> Checked<EventId> {
         let Some(name) = e.as_name() else {
-            return Err(self.report(Diagnostic::error(Code::WrongKind, e.span, "the name of an event is needed here")));
+            return Err(self.report(Diagnostic::error(
+                Code::WrongKind,
+                e.span,
+                "the name of an event is needed here",
+            )));
         };
         match self.symbol(&name.text, env) {
             Some(Symbol::Event(id)) => Ok(id),
@@ -213,8 +236,12 @@ impl Checker<'_> {
             }
             None => {
                 let events: Vec<&str> = self.names_of(|symbol| matches!(symbol, Symbol::Event(_)));
-                let diagnostic = Diagnostic::error(Code::UnknownName, e.span, format!("there is no event `{}`", name.text))
-                    .help_did_you_mean(&name.text, events);
+                let diagnostic = Diagnostic::error(
+                    Code::UnknownName,
+                    e.span,
+                    format!("there is no event `{}`", name.text),
+                )
+                .help_did_you_mean(&name.text, events);
                 Err(self.report(diagnostic))
             }
         }
@@ -225,16 +252,14 @@ impl Checker<'_> {
         self.scopes[0].iter().filter(|(_, symbol)| is(*symbol)).map(|(name, _)| name).collect()
     }
 
-    fn tuple(&mut self, items: &[ast::Expr], unit: Option<&ast::UnitExpr>, span: Span, env: &Env) -> Checked<Expr> {
-        let items: Vec<Checked<Expr>> = items.iter().map(|item| self.expr(item, env)).collect();
-        let unit = unit.map(|unit| self.unit(unit)).transpose()?;
-        let mut items = items.into_iter().collect::<Checked<Vec<_>>>()?;
-        if let Some(unit) = unit {
-            for item in &mut items {
-                self.need_number(item, "a component with the unit behind the parentheses")?;
-            }
-            items = items.into_iter().map(|item| self.with_unit(settle(item), unit)).collect();
-        }
+    fn tuple(
+        &mut self,
+        items: &[ast::Expr],
+        unit: Option<&ast::UnitExpr>,
+        span: Span,
+        env: &Env,
+    ) -> Checked<Expr> {
+        let mut items = self.members(items, unit, env)?;
         let ty = self.all_same(&mut items, span, "make a vector of components of")?;
         for item in &items {
             self.scalar(item, "a component")?;
@@ -247,14 +272,19 @@ impl Checker<'_> {
         };
         match kind {
             Some(kind) => Ok(Expr { kind, ty: Type::Value(Shape::Vector, dimension), span }),
-            None => Err(self.report(Diagnostic::error(Code::ShapeMismatch, span, "a vector has two or three components"))),
+            None => Err(self.report(Diagnostic::error(
+                Code::ShapeMismatch,
+                span,
+                "a vector has two or three components",
+            ))),
         }
     }
 
     fn record(&mut self, members: &[ast::NamedExpr], span: Span, env: &Env) -> Checked<Expr> {
         let values: Vec<Checked<Expr>> = members.iter().map(|member| self.expr(&member.value, env)).collect();
         let values = values.into_iter().collect::<Checked<Vec<_>>>()?;
-        let types = members.iter().zip(&values).map(|(member, value)| (member.name.text.clone(), value.ty.clone()));
+        let types =
+            members.iter().zip(&values).map(|(member, value)| (member.name.text.clone(), value.ty.clone()));
         let ty = Type::Record(types.collect());
         Ok(Expr { kind: ExprKind::Record(values), ty, span })
     }
@@ -268,11 +298,18 @@ impl Checker<'_> {
         let kind = match &object.ty {
             Type::Value(Shape::Vector, dimension) => {
                 let at = self.axis_names().iter().position(|name| *name == member.text);
-                at.map(|i| (Type::Value(Shape::Scalar, *dimension), ExprKind::Component(Box::new(object.clone()), i)))
+                at.map(|i| {
+                    (Type::Value(Shape::Scalar, *dimension), ExprKind::Component(Box::new(object.clone()), i))
+                })
             }
             Type::Value(Shape::Tensor, dimension) => {
                 let at = self.component_names().iter().position(|name| *name == member.text);
-                at.map(|k| (Type::Value(Shape::Scalar, *dimension), ExprKind::Component2(Box::new(object.clone()), k / 3, k % 3)))
+                at.map(|k| {
+                    (
+                        Type::Value(Shape::Scalar, *dimension),
+                        ExprKind::Component2(Box::new(object.clone()), k / 3, k % 3),
+                    )
+                })
             }
             Type::Record(members) => {
                 let at = members.iter().position(|(name, _)| *name == member.text);
@@ -341,8 +378,12 @@ impl Checker<'_> {
             _ => {
                 let words = self.words(&place.ty);
                 return Err(self.report(
-                    Diagnostic::error(Code::WrongKind, place.span, "after `@` stands a time, a point or an event")
-                        .here(format!("this is {words}")),
+                    Diagnostic::error(
+                        Code::WrongKind,
+                        place.span,
+                        "after `@` stands a time, a point or an event",
+                    )
+                    .here(format!("this is {words}")),
                 ));
             }
         };

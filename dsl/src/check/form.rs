@@ -129,7 +129,11 @@ fn common<'e>(items: impl IntoIterator<Item = (&'e Expr, Result<Degree, Fault>)>
             (None, found) => sum = found,
             (Some(a), Some(b)) if a == b => {}
             (Some(a), Some(b)) => {
-                let why = if a.min(b) == 0 { "one part has a test function, the other has none" } else { "test functions are multiplied here" };
+                let why = if a.min(b) == 0 {
+                    "one part has a test function, the other has none"
+                } else {
+                    "test functions are multiplied here"
+                };
                 return Err(Fault { span: item.span, why });
             }
         }
@@ -145,6 +149,8 @@ fn product(a: Degree, b: Degree) -> Result<Degree, Fault> {
 fn none(e: &Expr, degree: Degree) -> Result<Degree, Fault> {
     match degree {
         None | Some(0) => Ok(Some(0)),
-        Some(_) => Err(Fault { span: e.span, why: "a test function enters here in a way that is not linear" }),
+        Some(_) => {
+            Err(Fault { span: e.span, why: "a test function enters here in a way that is not linear" })
+        }
     }
 }

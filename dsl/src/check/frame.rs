@@ -2,7 +2,9 @@
 
 use super::{Checker, Env};
 use crate::diagnostic::{Code, Diagnostic, Sink};
-use crate::model::{Coordinates, Expr, ExprKind, Field, Frame, MeshSettings, Model, Output, Solve, State, Sweep, Test, Type};
+use crate::model::{
+    Coordinates, Expr, ExprKind, Field, Frame, MeshSettings, Model, Output, Solve, State, Sweep, Test, Type,
+};
 use crate::resolve::Program;
 use crate::source::Span;
 use crate::syntax::ast::{self, ItemKind};
@@ -47,8 +49,10 @@ fn units_error(error: &UnitSystemError, symbols: &[ast::Ident]) -> Diagnostic {
         | UnitSystemError::Contradiction { index, .. } => {
             Diagnostic::error(Code::UnitDimension, place(*index), error.to_string())
         }
-        UnitSystemError::Insufficient { .. } => Diagnostic::error(Code::UnitDimension, all, error.to_string())
-            .help("give a length, a time and a force or mass: `units um, s, nN;`"),
+        UnitSystemError::Insufficient { .. } => {
+            Diagnostic::error(Code::UnitDimension, all, error.to_string())
+                .help("give a length, a time and a force or mass: `units um, s, nN;`")
+        }
     }
 }
 
@@ -63,8 +67,12 @@ pub(super) fn coordinates(program: &Program, sink: &mut Sink) -> Coordinates {
         if let Some(geometry) = program.items.iter().find(|item| matches!(item.kind, ItemKind::Geometry(_))) {
             let place = Span { end: geometry.span.start, ..geometry.span };
             sink.push(
-                Diagnostic::error(Code::MissingArgument, place, "the model has a geometry and no coordinates")
-                    .help("write `coordinates axisymmetric(r, z);` or `coordinates plane_strain(x, y);`"),
+                Diagnostic::error(
+                    Code::MissingArgument,
+                    place,
+                    "the model has a geometry and no coordinates",
+                )
+                .help("write `coordinates axisymmetric(r, z);` or `coordinates plane_strain(x, y);`"),
             );
         }
         return fallback;
@@ -77,7 +85,11 @@ pub(super) fn coordinates(program: &Program, sink: &mut Sink) -> Coordinates {
         },
         _ => {}
     }
-    let help = format!("write `coordinates {}({});`", item.kind.text, if frame == Frame::Axisymmetric { "r, z" } else { "x, y" });
+    let help = format!(
+        "write `coordinates {}({});`",
+        item.kind.text,
+        if frame == Frame::Axisymmetric { "r, z" } else { "x, y" }
+    );
     sink.push(Diagnostic::error(Code::Expected, span, "two names are needed for the coordinates").help(help));
     fallback
 }
@@ -87,15 +99,23 @@ fn frame(kind: &ast::Ident, sink: &mut Sink) -> Option<Frame> {
         "axisymmetric" => Some(Frame::Axisymmetric),
         "plane_strain" => Some(Frame::PlaneStrain),
         "cartesian" => {
-            sink.push(Diagnostic::error(Code::Unsupported, kind.span, "models in three dimensions are not supported"));
+            sink.push(Diagnostic::error(
+                Code::Unsupported,
+                kind.span,
+                "models in three dimensions are not supported",
+            ));
             None
         }
         other => {
             let known = ["axisymmetric", "plane_strain", "cartesian"];
             sink.push(
-                Diagnostic::error(Code::UnknownName, kind.span, format!("there are no coordinates `{other}`"))
-                    .help_did_you_mean(other, known)
-                    .help("write `axisymmetric(r, z)` or `plane_strain(x, y)`"),
+                Diagnostic::error(
+                    Code::UnknownName,
+                    kind.span,
+                    format!("there are no coordinates `{other}`"),
+                )
+                .help_did_you_mean(other, known)
+                .help("write `axisymmetric(r, z)` or `plane_strain(x, y)`"),
             );
             None
         }

@@ -58,11 +58,16 @@ impl<'a> Checker<'a> {
 
     fn unique_labels(&mut self, path: &ast::Path) {
         for (k, label) in path.segments.iter().enumerate().filter_map(|(k, s)| Some((k, s.label.as_ref()?))) {
-            let earlier = path.segments[..k].iter().filter_map(|s| s.label.as_ref()).find(|other| other.text == label.text);
+            let earlier = path.segments[..k]
+                .iter()
+                .filter_map(|s| s.label.as_ref())
+                .find(|other| other.text == label.text);
             if let Some(first) = earlier {
                 let message = format!("`{}` has two labels `{}`", path.name.text, label.text);
-                self.sink
-                    .push(Diagnostic::error(Code::DuplicateName, label.span, message).label(first.span, "the first"));
+                self.sink.push(
+                    Diagnostic::error(Code::DuplicateName, label.span, message)
+                        .label(first.span, "the first"),
+                );
             }
         }
     }
@@ -126,11 +131,19 @@ impl<'a> Checker<'a> {
     fn region_boundary(&mut self, value: &ast::Expr) -> Checked<Vec<Piece>> {
         let env = Env::default();
         let args = match &value.kind {
-            ast::ExprKind::Call { callee, args } if callee.as_name().is_some_and(|name| name.text == "loop") => args,
+            ast::ExprKind::Call { callee, args }
+                if callee.as_name().is_some_and(|name| name.text == "loop") =>
+            {
+                args
+            }
             _ => {
                 return Err(self.report(
-                    Diagnostic::error(Code::WrongKind, value.span, "a region is the inside of a loop of paths")
-                        .help("write `loop(a, b, axis)`, with paths and `path.label`s"),
+                    Diagnostic::error(
+                        Code::WrongKind,
+                        value.span,
+                        "a region is the inside of a loop of paths",
+                    )
+                    .help("write `loop(a, b, axis)`, with paths and `path.label`s"),
                 ));
             }
         };
@@ -143,11 +156,16 @@ impl<'a> Checker<'a> {
                         match piece {
                             Piece::Region(_) | Piece::First(_) | Piece::Pair(_) => {
                                 let message = "a loop is made of paths";
-                                fault = Some(self.report(Diagnostic::error(Code::WrongKind, arg.span, message)));
+                                fault =
+                                    Some(self.report(Diagnostic::error(Code::WrongKind, arg.span, message)));
                             }
                             edge if boundary.contains(&edge) => {
                                 let message = format!("{} is in this loop twice", self.piece_words(edge));
-                                fault = Some(self.report(Diagnostic::error(Code::DuplicateName, arg.span, message)));
+                                fault = Some(self.report(Diagnostic::error(
+                                    Code::DuplicateName,
+                                    arg.span,
+                                    message,
+                                )));
                             }
                             edge => boundary.push(edge),
                         }

@@ -18,16 +18,27 @@ impl Checker<'_> {
         }
     }
 
-    fn match_value(&mut self, m: &ast::Match, values: Vec<Checked<Expr>>, span: Span, env: &Env) -> Checked<Expr> {
+    fn match_value(
+        &mut self,
+        m: &ast::Match,
+        values: Vec<Checked<Expr>>,
+        span: Span,
+        env: &Env,
+    ) -> Checked<Expr> {
         let scrutinee = self.settled(&m.scrutinee, env);
-        let bounds: Vec<Checked<Option<(bool, Expr)>>> = m.arms.iter().map(|arm| self.bound_of(arm, env)).collect();
+        let bounds: Vec<Checked<Option<(bool, Expr)>>> =
+            m.arms.iter().map(|arm| self.bound_of(arm, env)).collect();
         let mut scrutinee = scrutinee?;
         self.scalar(&scrutinee, "what a `match` looks at")?;
         let mut arms = Vec::new();
         let mut otherwise = None;
         for ((arm, bound), value) in m.arms.iter().zip(bounds).zip(values) {
             if otherwise.is_some() {
-                return Err(self.incomplete(arm.span, "nothing comes after `else`", "remove this arm or put it first"));
+                return Err(self.incomplete(
+                    arm.span,
+                    "nothing comes after `else`",
+                    "remove this arm or put it first",
+                ));
             }
             let value = value?;
             match bound? {
@@ -39,7 +50,11 @@ impl Checker<'_> {
             }
         }
         let Some(otherwise) = otherwise else {
-            return Err(self.incomplete(span, "this `match` says nothing about large values", "end it with `else => ..`"));
+            return Err(self.incomplete(
+                span,
+                "this `match` says nothing about large values",
+                "end it with `else => ..`",
+            ));
         };
         self.ascending(&arms)?;
         let mut all: Vec<Expr> = arms.iter().map(|arm| arm.value.clone()).chain([otherwise]).collect();
@@ -53,7 +68,12 @@ impl Checker<'_> {
             ast::Smoothness::C1 => Smoothness::C1,
             ast::Smoothness::Jumps => Smoothness::Jumps,
         };
-        let kind = ExprKind::MatchValue { scrutinee: Box::new(scrutinee), arms, otherwise: Box::new(otherwise), smoothness };
+        let kind = ExprKind::MatchValue {
+            scrutinee: Box::new(scrutinee),
+            arms,
+            otherwise: Box::new(otherwise),
+            smoothness,
+        };
         Ok(Expr { kind, ty, span })
     }
 
@@ -77,18 +97,32 @@ impl Checker<'_> {
     /// Bounds that are plain numbers must ascend; others are compared with the default parameters, once those are numbers.
     fn ascending(&mut self, arms: &[Arm]) -> Checked<()> {
         for pair in arms.windows(2) {
-            let (Some(low), Some(high)) = (constant::literal(&pair[0].bound), constant::literal(&pair[1].bound)) else { continue };
+            let (Some(low), Some(high)) =
+                (constant::literal(&pair[0].bound), constant::literal(&pair[1].bound))
+            else {
+                continue;
+            };
             if low > high {
                 return Err(self.report(
-                    Diagnostic::error(Code::IncompleteMatch, pair[1].bound.span, "the bounds of a `match` ascend")
-                        .label(pair[0].bound.span, "this one is larger"),
+                    Diagnostic::error(
+                        Code::IncompleteMatch,
+                        pair[1].bound.span,
+                        "the bounds of a `match` ascend",
+                    )
+                    .label(pair[0].bound.span, "this one is larger"),
                 ));
             }
         }
         Ok(())
     }
 
-    fn match_region(&mut self, m: &ast::Match, values: Vec<Checked<Expr>>, span: Span, env: &Env) -> Checked<Expr> {
+    fn match_region(
+        &mut self,
+        m: &ast::Match,
+        values: Vec<Checked<Expr>>,
+        span: Span,
+        env: &Env,
+    ) -> Checked<Expr> {
         let mut arms: Vec<(RegionId, Expr)> = Vec::new();
         let mut otherwise = None;
         for (arm, value) in m.arms.iter().zip(values) {
@@ -98,7 +132,8 @@ impl Checker<'_> {
                     let value = value?;
                     for region in regions {
                         if arms.iter().any(|(known, _)| *known == region) {
-                            let message = format!("`{}` has an arm already", self.geometry.regions[region.0].name);
+                            let message =
+                                format!("`{}` has an arm already", self.geometry.regions[region.0].name);
                             return Err(self.incomplete(name.span, &message, "give every region one arm"));
                         }
                         arms.push((region, value.clone()));
@@ -106,7 +141,11 @@ impl Checker<'_> {
                 }
                 Pattern::Else(_) => otherwise = Some(value?),
                 Pattern::Less(bound) | Pattern::LessEqual(bound) => {
-                    return Err(self.incomplete(bound.span, "an arm of a choice by region starts with a region", "write `core => ..`"));
+                    return Err(self.incomplete(
+                        bound.span,
+                        "an arm of a choice by region starts with a region",
+                        "write `core => ..`",
+                    ));
                 }
             }
         }
@@ -129,9 +168,9 @@ impl Checker<'_> {
             Piece::Region(id) => Some(*id),
             _ => None,
         });
-        regions.collect::<Option<Vec<_>>>().ok_or(()).or_else(|()| {
+        regions.collect::<Option<Vec<_>>>().ok_or_else(|| {
             let message = format!("`{}` is no region", name.text());
-            Err(self.report(Diagnostic::error(Code::WrongKind, name.span, message)))
+            self.report(Diagnostic::error(Code::WrongKind, name.span, message))
         })
     }
 }

@@ -4,6 +4,7 @@
 //! name says nothing afterwards ([`Reported`]). Two passes over the finished model follow: [`place`] asks whether values exist where they
 //! are used, [`dae`] counts equations.
 
+mod builtin;
 mod call;
 mod constant;
 pub mod dae;
@@ -11,21 +12,28 @@ mod domain;
 mod expr;
 mod form;
 mod frame;
+mod function;
 mod geometry;
 mod item;
 mod matching;
 mod output;
+mod pair;
+mod param;
 mod physics;
 mod place;
+mod reduce;
 mod settings;
 mod shape;
 mod test;
 mod types;
 pub(crate) mod unit;
+mod unknown;
 mod walk;
 
 use crate::diagnostic::{Diagnostic, Sink};
-use crate::model::{Block, Coordinates, Event, Expr, Geometry, Let, LetId, LocalId, Model, Pair, PairId, Type};
+use crate::model::{
+    Block, Coordinates, Event, Expr, Geometry, Let, LetId, LocalId, Model, Pair, PairId, Type,
+};
 use crate::resolve::Program;
 use crate::resolve::scope::{Scope, Symbol};
 use crate::source::SourceMap;
@@ -216,5 +224,9 @@ impl<'a> Checker<'a> {
 
 /// Placeholders that keep ids in step where an item is faulty; no finished model holds one.
 pub(crate) fn zero(span: crate::source::Span) -> Expr {
-    Expr { kind: crate::model::ExprKind::Number(0.0), ty: Type::Value(crate::model::Shape::Scalar, Dimension::NUMBER), span }
+    Expr {
+        kind: crate::model::ExprKind::Number(0.0),
+        ty: Type::Value(crate::model::Shape::Scalar, Dimension::NUMBER),
+        span,
+    }
 }

@@ -1,9 +1,11 @@
 //! `output { .. }`, events and sweeps: what a run records and what it reacts to.
 
-use super::shape::{settle, value};
+use super::shape::value;
 use super::{Checked, Checker, Env, Reported, unit};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::model::{Action, Column, EventId, Every, Expr, Frames, ParamId, Shape, Sweep, Table, Trigger, Type};
+use crate::model::{
+    Action, Column, EventId, Every, Expr, Frames, ParamId, Shape, Sweep, Table, Trigger, Type,
+};
 use crate::resolve::scope::{Symbol, Word};
 use crate::source::Span;
 use crate::syntax::ast::{self, ExprKind as Syntax, OutputKind};
@@ -32,7 +34,9 @@ impl Checker<'_> {
                 }
                 let every = self.every(every);
                 let columns = self.columns(columns);
-                for column in columns.iter().filter(|column| !matches!(column.value.ty, Type::Value(Shape::Scalar, _))) {
+                for column in
+                    columns.iter().filter(|column| !matches!(column.value.ty, Type::Value(Shape::Scalar, _)))
+                {
                     self.need_scalar(&column.value, "a column of a table must be a scalar");
                 }
                 let table = Table { file: file.value.clone(), every: every?, columns };
@@ -46,7 +50,9 @@ impl Checker<'_> {
     fn every(&mut self, every: &ast::Every) -> Checked<Every> {
         match every {
             ast::Every::Step(_) => Ok(Every::Step),
-            ast::Every::Time(e) => self.typed(e, &Type::TIME, "an interval", &Env::default()).map(Every::Time),
+            ast::Every::Time(e) => {
+                self.typed(e, &Type::TIME, "an interval", &Env::default()).map(Every::Time)
+            }
         }
     }
 
@@ -72,7 +78,8 @@ impl Checker<'_> {
         let Some((_, dimension)) = value(&checked.ty) else {
             let words = self.words(&checked.ty);
             return Err(self.report(
-                Diagnostic::error(Code::ShapeMismatch, checked.span, "a column holds values").here(format!("this is {words}")),
+                Diagnostic::error(Code::ShapeMismatch, checked.span, "a column holds values")
+                    .here(format!("this is {words}")),
             ));
         };
         let unit = match shown? {
@@ -108,7 +115,9 @@ impl Checker<'_> {
         let trigger = match &ast.trigger {
             ast::Trigger::When(condition) => self.condition(condition, &env).map(Trigger::When),
             ast::Trigger::Every(ast::Every::Step(_)) => Ok(Trigger::EveryStep),
-            ast::Trigger::Every(ast::Every::Time(e)) => self.typed(e, &Type::TIME, "an interval", &env).map(Trigger::Every),
+            ast::Trigger::Every(ast::Every::Time(e)) => {
+                self.typed(e, &Type::TIME, "an interval", &env).map(Trigger::Every)
+            }
         };
         let actions: Vec<_> = ast.actions.iter().filter_map(|action| self.action(action).ok()).collect();
         let event = &mut self.events[id.0];
@@ -125,15 +134,23 @@ impl Checker<'_> {
                 Ok(vec![Action::Warn(text.clone())])
             }
             ("set", args) if !args.is_empty() => args.iter().map(|arg| self.set_state(arg)).collect(),
-            ("remesh", _) => Err(self.report(Diagnostic::error(Code::Unsupported, action.span, "remeshing is not supported"))),
+            ("remesh", _) => Err(self.report(Diagnostic::error(
+                Code::Unsupported,
+                action.span,
+                "remeshing is not supported",
+            ))),
             ("stop" | "warn" | "set", _) => Err(self.report(
                 Diagnostic::error(Code::MissingArgument, action.span, "this action has other arguments")
                     .help("write `stop`, `warn(\"text\")` or `set(x: value)`"),
             )),
             (other, _) => Err(self.report(
-                Diagnostic::error(Code::UnknownName, action.name.span, format!("there is no action `{other}`"))
-                    .help_did_you_mean(other, ["stop", "warn", "set"])
-                    .help("the actions are `stop`, `warn(\"text\")` and `set(x: value)`"),
+                Diagnostic::error(
+                    Code::UnknownName,
+                    action.name.span,
+                    format!("there is no action `{other}`"),
+                )
+                .help_did_you_mean(other, ["stop", "warn", "set"])
+                .help("the actions are `stop`, `warn(\"text\")` and `set(x: value)`"),
             )),
         }
     }
@@ -141,13 +158,15 @@ impl Checker<'_> {
     fn set_state(&mut self, arg: &ast::Arg) -> Checked<Action> {
         let Some(name) = &arg.name else {
             return Err(self.report(
-                Diagnostic::error(Code::MissingArgument, arg.span, "which state is set?").help("write `set(x: value)`"),
+                Diagnostic::error(Code::MissingArgument, arg.span, "which state is set?")
+                    .help("write `set(x: value)`"),
             ));
         };
         let Some(Symbol::State(id)) = self.symbol(&name.text, &Env::default()) else {
             let states = self.names_of(|symbol| matches!(symbol, Symbol::State(_)));
             let message = format!("there is no state `{}`", name.text);
-            let diagnostic = Diagnostic::error(Code::UnknownName, name.span, message).help_did_you_mean(&name.text, states);
+            let diagnostic = Diagnostic::error(Code::UnknownName, name.span, message)
+                .help_did_you_mean(&name.text, states);
             return Err(self.report(diagnostic));
         };
         let ty = Type::Value(Shape::Scalar, self.state_dimension(id)?);
@@ -162,7 +181,8 @@ impl Checker<'_> {
             self.sink.push(Diagnostic::error(Code::DuplicateName, ast.name.span, message));
         }
         let axes: Vec<_> = ast.axes.iter().filter_map(|axis| self.axis(axis).ok()).collect();
-        let columns: Vec<_> = ast.columns.iter().filter_map(|column| self.sweep_column(column).ok()).collect();
+        let columns: Vec<_> =
+            ast.columns.iter().filter_map(|column| self.sweep_column(column).ok()).collect();
         self.rest.sweeps.push(Sweep { name: ast.name.text.clone(), axes, columns, span: ast.name.span });
     }
 
@@ -186,7 +206,8 @@ impl Checker<'_> {
             let values = self.set(&axis.values, ty, &what, &Env::default())?;
             return Ok((params, values.into_iter().map(|value| vec![value]).collect()));
         }
-        let values: Vec<Checked<Vec<Expr>>> = axis.values.items.iter().map(|item| self.swept_tuple(item, axis, &types)).collect();
+        let values: Vec<Checked<Vec<Expr>>> =
+            axis.values.items.iter().map(|item| self.swept_tuple(item, axis, &types)).collect();
         Ok((params, values.into_iter().collect::<Checked<_>>()?))
     }
 
@@ -201,8 +222,12 @@ impl Checker<'_> {
             }
             None => {
                 let params = self.names_of(|symbol| matches!(symbol, Symbol::Param(_)));
-                let diagnostic = Diagnostic::error(Code::UnknownName, name.span, format!("there is no parameter `{text}`"))
-                    .help_did_you_mean(&text, params);
+                let diagnostic = Diagnostic::error(
+                    Code::UnknownName,
+                    name.span,
+                    format!("there is no parameter `{text}`"),
+                )
+                .help_did_you_mean(&text, params);
                 Err(self.report(diagnostic))
             }
         }
@@ -217,15 +242,13 @@ impl Checker<'_> {
                 return Err(self.report(Diagnostic::error(Code::ShapeMismatch, item.span, message)));
             }
         };
-        let unit = own.or(axis.values.unit.as_ref()).map(|unit| self.unit(unit)).transpose()?;
-        let values = items.iter().zip(types).zip(&axis.names).map(|((e, ty), name)| {
-            let mut value = self.settled(e, &Env::default())?;
-            if let Some(unit) = unit {
-                self.need_number(&value, "a member of a set with a unit")?;
-                value = self.with_unit(settle(value), unit);
-            }
-            self.expect(value, ty, &format!("a value of `{}`", name.text()))
-        });
+        let unit = own.or(axis.values.unit.as_ref());
+        let values = self.members(items, unit, &Env::default())?;
+        let values = values
+            .into_iter()
+            .zip(types)
+            .zip(&axis.names)
+            .map(|((value, ty), name)| self.expect(value, ty, &format!("a value of `{}`", name.text())));
         let values: Vec<Checked<Expr>> = values.collect();
         values.into_iter().collect()
     }

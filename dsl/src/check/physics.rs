@@ -29,8 +29,12 @@ impl Checker<'_> {
         match kind {
             ast::StatementKind::Energy { density, domain } => self.energy(density, domain.as_ref(), env),
             ast::StatementKind::Residual { form, domain } => self.residual(form, domain.as_ref(), span, env),
-            ast::StatementKind::Load { quantity, force, domain } => self.load(quantity, force, domain.as_ref(), env),
-            ast::StatementKind::Hold { quantity, value, domain } => self.hold(quantity, value, domain.as_ref(), span, env),
+            ast::StatementKind::Load { quantity, force, domain } => {
+                self.load(quantity, force, domain.as_ref(), env)
+            }
+            ast::StatementKind::Hold { quantity, value, domain } => {
+                self.hold(quantity, value, domain.as_ref(), span, env)
+            }
             ast::StatementKind::Equation(equation) => self.equation(equation, env),
             ast::StatementKind::Tie { .. } => {
                 Err(self.report(Diagnostic::error(Code::Unsupported, span, "ties are not supported")))
@@ -44,7 +48,12 @@ impl Checker<'_> {
         domain.map(|domain| self.domain(domain, env)).transpose()
     }
 
-    fn energy(&mut self, density: &ast::Expr, domain: Option<&ast::Expr>, env: &Env) -> Checked<StatementKind> {
+    fn energy(
+        &mut self,
+        density: &ast::Expr,
+        domain: Option<&ast::Expr>,
+        env: &Env,
+    ) -> Checked<StatementKind> {
         let (density, domain) = (self.settled(density, env), self.on(domain, env));
         let (density, domain) = (density?, domain?);
         let have = self.scalar(&density, "an energy")?;
@@ -53,8 +62,9 @@ impl Checker<'_> {
             return Ok(StatementKind::Energy(density, domain));
         }
         let (words, want_words) = (self.words(&density.ty), self.dimension_words(want));
-        let mut diagnostic = Diagnostic::error(Code::EnergyDimension, density.span, "the integral of this term is no energy")
-            .here(format!("this is {words}, but {want_words} is needed"));
+        let mut diagnostic =
+            Diagnostic::error(Code::EnergyDimension, density.span, "the integral of this term is no energy")
+                .here(format!("this is {words}, but {want_words} is needed"));
         diagnostic = match &domain {
             Some(domain) => diagnostic.label(domain.span, measured_words(domain)),
             None => diagnostic.help("without `on` the term is an energy by itself"),
@@ -66,7 +76,13 @@ impl Checker<'_> {
         self.words(&Type::Value(Shape::Scalar, dimension))
     }
 
-    fn residual(&mut self, form: &ast::Expr, domain: Option<&ast::Expr>, span: Span, env: &Env) -> Checked<StatementKind> {
+    fn residual(
+        &mut self,
+        form: &ast::Expr,
+        domain: Option<&ast::Expr>,
+        span: Span,
+        env: &Env,
+    ) -> Checked<StatementKind> {
         let (form, domain) = (self.settled(form, env), self.on(domain, env));
         let form = form?;
         self.scalar(&form, "a residual")?;
@@ -93,9 +109,13 @@ impl Checker<'_> {
         let ((s, d), (t, e)) = (self.operand(&quantity)?, self.operand(&force_value)?);
         if s != t {
             return Err(self.report(
-                Diagnostic::error(Code::ShapeMismatch, force_value.span, "a load has the shape of the quantity on which it works")
-                    .here(format!("this is {}", self.words(&force_value.ty)))
-                    .label(quantity.span, format!("this is {}", self.words(&quantity.ty))),
+                Diagnostic::error(
+                    Code::ShapeMismatch,
+                    force_value.span,
+                    "a load has the shape of the quantity on which it works",
+                )
+                .here(format!("this is {}", self.words(&force_value.ty)))
+                .label(quantity.span, format!("this is {}", self.words(&quantity.ty))),
             ));
         }
         if d * e == per_measure(energy(), domain.as_ref()) {
@@ -105,9 +125,17 @@ impl Checker<'_> {
     }
 
     /// "this load is a Force, but `on nucleus` needs Force/Area".
-    fn load_error(&mut self, quantity: &Expr, q: Dimension, force: &Expr, f: Dimension, domain: Option<&Domain>) -> Reported {
+    fn load_error(
+        &mut self,
+        quantity: &Expr,
+        q: Dimension,
+        force: &Expr,
+        f: Dimension,
+        domain: Option<&Domain>,
+    ) -> Reported {
         let want = per_measure(energy(), domain) / q;
-        let place = domain.map_or_else(|| "without `on` it".into(), |d| format!("`on {}`", self.sources.slice(d.span)));
+        let place = domain
+            .map_or_else(|| "without `on` it".into(), |d| format!("`on {}`", self.sources.slice(d.span)));
         let message = format!("this load is {}, but {place} needs {}", described(f), described(want));
         let mut diagnostic = Diagnostic::error(Code::LoadDimension, force.span, message)
             .here(format!("this is {}", self.words(&force.ty)))
@@ -129,7 +157,8 @@ impl Checker<'_> {
         let measure = if domain::kind(domain) == domain::Kind::Cells { "volume" } else { "area" };
         let (text, total) = (self.sources.slice(force.span), leading_total(force)?);
         let name = self.sources.slice(total.span);
-        let (start, end) = (total.span.start.checked_sub(force.span.start)?, total.span.end.checked_sub(force.span.start)?);
+        let (start, end) =
+            (total.span.start.checked_sub(force.span.start)?, total.span.end.checked_sub(force.span.start)?);
         let (before, after) = (text.get(..start as usize)?, text.get(end as usize..)?);
         Some(format!(
             "`{name}` looks like a total; spread it: `load {q} with {before}{name}/{measure}({d}){after} on {d};`"
@@ -170,8 +199,12 @@ impl Checker<'_> {
             _ => {}
         }
         Err(self.report(
-            Diagnostic::error(Code::WrongKind, quantity.span, "only a field or one of its components can be held")
-                .help("an equation between states is written `a == b;`"),
+            Diagnostic::error(
+                Code::WrongKind,
+                quantity.span,
+                "only a field or one of its components can be held",
+            )
+            .help("an equation between states is written `a == b;`"),
         ))
     }
 
@@ -211,11 +244,13 @@ fn described(dimension: Dimension) -> String {
 /// The first parameter or `let` with a dimension in a product.
 fn leading_total(e: &Expr) -> Option<&Expr> {
     match &e.kind {
-        ExprKind::Param(_) | ExprKind::Let(_) | ExprKind::State(_) => {
-            value(&e.ty).filter(|(shape, dimension)| *shape == Shape::Scalar && !dimension.is_number()).map(|_| e)
-        }
+        ExprKind::Param(_) | ExprKind::Let(_) | ExprKind::State(_) => value(&e.ty)
+            .filter(|(shape, dimension)| *shape == Shape::Scalar && !dimension.is_number())
+            .map(|_| e),
         ExprKind::Negate(a) => leading_total(a),
-        ExprKind::Arithmetic(crate::model::Arithmetic::Mul, a, b) => leading_total(a).or_else(|| leading_total(b)),
+        ExprKind::Arithmetic(crate::model::Arithmetic::Mul, a, b) => {
+            leading_total(a).or_else(|| leading_total(b))
+        }
         ExprKind::Arithmetic(crate::model::Arithmetic::Div, a, _) => leading_total(a),
         _ => None,
     }

@@ -5,7 +5,8 @@ use super::domain::piece_words;
 use super::walk::{Definition, check_exprs, deep, no_circles};
 use crate::diagnostic::{Code, Diagnostic, Sink};
 use crate::model::{
-    Action, Bounds, Domain, Every, Expr, ExprKind, Field, Model, ParamId, PathId, Piece, RegionId, SegmentKind, Start, StatementKind, Trigger,
+    Action, Bounds, Domain, Every, Expr, ExprKind, Field, Model, ParamId, PathId, Piece, RegionId,
+    SegmentKind, Start, StatementKind, Trigger,
 };
 use crate::source::Span;
 use std::collections::BTreeSet;
@@ -37,16 +38,30 @@ impl Context<'_> {
     /// Before the run, and before there is a mesh.
     const CONSTANT: Context<'static> = Context { known: &[], domain: None };
     /// One number at each time.
-    const GLOBAL: Context<'static> =
-        Context { known: &[Ingredient::State, Ingredient::Time, Ingredient::Functional, Ingredient::Measure], domain: None };
+    const GLOBAL: Context<'static> = Context {
+        known: &[Ingredient::State, Ingredient::Time, Ingredient::Functional, Ingredient::Measure],
+        domain: None,
+    };
     /// Conditions of events.
     const EVENT: Context<'static> = Context {
-        known: &[Ingredient::State, Ingredient::Time, Ingredient::Functional, Ingredient::Measure, Ingredient::Held],
+        known: &[
+            Ingredient::State,
+            Ingredient::Time,
+            Ingredient::Functional,
+            Ingredient::Measure,
+            Ingredient::Held,
+        ],
         domain: None,
     };
     /// One number of a finished run.
     const RESULT: Context<'static> = Context {
-        known: &[Ingredient::State, Ingredient::Time, Ingredient::Functional, Ingredient::Measure, Ingredient::Run],
+        known: &[
+            Ingredient::State,
+            Ingredient::Time,
+            Ingredient::Functional,
+            Ingredient::Measure,
+            Ingredient::Run,
+        ],
         domain: None,
     };
     /// Tests: no time of their own.
@@ -56,7 +71,10 @@ impl Context<'_> {
 
     /// The start of a field.
     fn field_start(domain: &Domain) -> Context<'_> {
-        Context { known: &[Ingredient::Coordinate, Ingredient::Region, Ingredient::Measure], domain: Some(domain) }
+        Context {
+            known: &[Ingredient::Coordinate, Ingredient::Region, Ingredient::Measure],
+            domain: Some(domain),
+        }
     }
 
     /// At the points of a domain.
@@ -144,7 +162,8 @@ impl<'m> Placer<'m, '_> {
         });
         if let Some(other) = later {
             let (param, other) = (&model.params[id.0], &model.params[other.0]);
-            let message = format!("the default of `{}` uses `{}`, which is declared after it", param.name, other.name);
+            let message =
+                format!("the default of `{}` uses `{}`, which is declared after it", param.name, other.name);
             self.sink.push(
                 Diagnostic::error(Code::NotConstant, param.default.span, message)
                     .label(other.span, "declared here")
@@ -164,7 +183,10 @@ impl<'m> Placer<'m, '_> {
             }
         }
         let mesh = &self.model.mesh;
-        self.all(mesh.sizes.iter().map(|(size, _)| size).chain(&mesh.growth).chain(&mesh.quality), Context::CONSTANT);
+        self.all(
+            mesh.sizes.iter().map(|(size, _)| size).chain(&mesh.growth).chain(&mesh.quality),
+            Context::CONSTANT,
+        );
         self.all(self.model.pairs.iter().map(|pair| &pair.search), Context::CONSTANT);
     }
 
@@ -223,7 +245,8 @@ impl<'m> Placer<'m, '_> {
     fn output(&mut self) {
         let output = &self.model.output;
         let frames = output.frames.iter().map(|frames| &frames.every);
-        let intervals = frames.chain(output.tables.iter().map(|table| &table.every)).chain(&output.checkpoint);
+        let intervals =
+            frames.chain(output.tables.iter().map(|table| &table.every)).chain(&output.checkpoint);
         for every in intervals {
             if let Every::Time(time) = every {
                 self.place(time, Context::CONSTANT);
@@ -259,7 +282,13 @@ impl<'m> Placer<'m, '_> {
     }
 
     /// `via` is where a definition is used whose inside is walked.
-    fn walk(&mut self, e: &'m Expr, context: Context<'_>, via: Option<Span>, seen: &mut BTreeSet<Definition>) {
+    fn walk(
+        &mut self,
+        e: &'m Expr,
+        context: Context<'_>,
+        via: Option<Span>,
+        seen: &mut BTreeSet<Definition>,
+    ) {
         if let Some(found) = ingredient(e)
             && !context.known.contains(&found)
         {
@@ -287,8 +316,12 @@ impl<'m> Placer<'m, '_> {
                 self.walk(place, Context::CONSTANT, via, &mut BTreeSet::new());
                 return;
             }
-            ExprKind::AtEvent(inner, _) => return self.walk(inner, Context::GLOBAL, via, &mut BTreeSet::new()),
-            ExprKind::AtPoint(_, place) => return self.walk(place, Context::CONSTANT, via, &mut BTreeSet::new()),
+            ExprKind::AtEvent(inner, _) => {
+                return self.walk(inner, Context::GLOBAL, via, &mut BTreeSet::new());
+            }
+            ExprKind::AtPoint(_, place) => {
+                return self.walk(place, Context::CONSTANT, via, &mut BTreeSet::new());
+            }
             _ => {}
         }
         for child in e.children() {
@@ -306,13 +339,24 @@ impl<'m> Placer<'m, '_> {
     /// Something is used where it is not known.
     fn not_known(&mut self, e: &Expr, found: Ingredient, context: Context<'_>, via: Option<Span>) {
         let what = self.words(e);
-        let pointwise = matches!(found, Ingredient::Field | Ingredient::Coordinate | Ingredient::Region | Ingredient::Gap);
+        let pointwise = matches!(
+            found,
+            Ingredient::Field | Ingredient::Coordinate | Ingredient::Region | Ingredient::Gap
+        );
         let global = context.known.contains(&Ingredient::State);
         let test = context.known.contains(&Ingredient::Run);
         let (code, message, help) = match found {
-            Ingredient::Test => (Code::Misplaced, format!("{what} stands in residuals only"), "write `residual .. on D;`"),
-            Ingredient::Held => (Code::Misplaced, format!("{what} stands in conditions of events only"), "`event e when .. for 60 s;`"),
-            Ingredient::Run => (Code::NeedsRun, format!("{what} is known after the run"), "it stands in tests and sweeps"),
+            Ingredient::Test => {
+                (Code::Misplaced, format!("{what} stands in residuals only"), "write `residual .. on D;`")
+            }
+            Ingredient::Held => (
+                Code::Misplaced,
+                format!("{what} stands in conditions of events only"),
+                "`event e when .. for 60 s;`",
+            ),
+            Ingredient::Run => {
+                (Code::NeedsRun, format!("{what} is known after the run"), "it stands in tests and sweeps")
+            }
             _ if pointwise && global => (
                 Code::VariesInSpace,
                 format!("{what} varies in space, and one number is needed here"),
@@ -361,7 +405,10 @@ impl<'m> Placer<'m, '_> {
                 self.field_on(&self.model.fields[id.0], domain, via.unwrap_or(e.span), Some(e.span));
             }
             ExprKind::Gap(id) => {
-                let here = domain.pieces.iter().all(|piece| matches!(piece, Piece::First(p) | Piece::Pair(p) if p == id));
+                let here = domain
+                    .pieces
+                    .iter()
+                    .all(|piece| matches!(piece, Piece::First(p) | Piece::Pair(p) if p == id));
                 if !here {
                     let name = &self.model.pairs[id.0].name;
                     let message = format!("`{name}.gap` exists on `{name}` and `{name}.first` only");
@@ -371,9 +418,11 @@ impl<'m> Placer<'m, '_> {
             ExprKind::MatchRegion(arms, None) => {
                 let covered: Vec<RegionId> = arms.iter().map(|(region, _)| *region).collect();
                 if let Some(piece) = self.uncovered(domain, &covered) {
-                    let names = covered.iter().map(|r| format!("`{}`", self.model.geometry.regions[r.0].name));
+                    let names =
+                        covered.iter().map(|r| format!("`{}`", self.model.geometry.regions[r.0].name));
                     let message = format!("this choice by region has no arm for {}", self.piece(piece));
-                    let help = format!("it has {}; add an arm or `else`", names.collect::<Vec<_>>().join(", "));
+                    let help =
+                        format!("it has {}; add an arm or `else`", names.collect::<Vec<_>>().join(", "));
                     let mut diagnostic = Diagnostic::error(Code::IncompleteMatch, e.span, message)
                         .label(domain.span, "it is needed here")
                         .help(help);
@@ -388,7 +437,8 @@ impl<'m> Placer<'m, '_> {
     }
 
     fn missing(&mut self, place: Span, inner: Span, domain: &Domain, message: String) {
-        let mut diagnostic = Diagnostic::error(Code::NotOnDomain, place, message).label(domain.span, "it is needed here");
+        let mut diagnostic =
+            Diagnostic::error(Code::NotOnDomain, place, message).label(domain.span, "it is needed here");
         if inner != place {
             diagnostic = diagnostic.label(inner, "it comes in here");
         }
@@ -423,7 +473,9 @@ impl<'m> Placer<'m, '_> {
     fn surfaces(&self, piece: Piece) -> Vec<Piece> {
         let pair = |id: crate::model::PairId| &self.model.pairs[id.0];
         match piece {
-            Piece::First(id) => pair(id).first.pieces.iter().flat_map(|piece| self.surfaces(*piece)).collect(),
+            Piece::First(id) => {
+                pair(id).first.pieces.iter().flat_map(|piece| self.surfaces(*piece)).collect()
+            }
             Piece::Pair(id) => {
                 let both = pair(id).first.pieces.iter().chain(&pair(id).second.pieces);
                 both.flat_map(|piece| self.surfaces(*piece)).collect()
@@ -468,7 +520,9 @@ fn ingredient(e: &Expr) -> Option<Ingredient> {
         ExprKind::Gap(_) => Ingredient::Gap,
         ExprKind::Reduce(..) | ExprKind::Force(..) | ExprKind::AtPoint(..) => Ingredient::Functional,
         ExprKind::Measure(_) => Ingredient::Measure,
-        ExprKind::ReduceRun(..) | ExprKind::AtTime(..) | ExprKind::AtEvent(..) | ExprKind::OutcomeIs(_) => Ingredient::Run,
+        ExprKind::ReduceRun(..) | ExprKind::AtTime(..) | ExprKind::AtEvent(..) | ExprKind::OutcomeIs(_) => {
+            Ingredient::Run
+        }
         ExprKind::Held(..) => Ingredient::Held,
         _ => return None,
     })

@@ -22,7 +22,9 @@ impl Checker<'_> {
             "growth" | "quality" => Type::NUMBER,
             _ => return Err(self.unknown_setting(&setting.name, &["size", "growth", "quality"])),
         };
-        let value = self.setting_value(setting).and_then(|e| self.typed(e, &ty, &setting_words(setting), &Env::default()));
+        let value = self
+            .setting_value(setting)
+            .and_then(|e| self.typed(e, &ty, &setting_words(setting), &Env::default()));
         let domain = setting.domain.as_ref().map(|domain| self.domain(domain, &Env::default())).transpose();
         let (value, domain) = (value?, domain?);
         if name == "size" {
@@ -78,7 +80,8 @@ impl Checker<'_> {
                     Ok(())
                 }
                 SettingValue::Expr(e) => Err(self.report(
-                    Diagnostic::error(Code::WrongKind, e.span, "the time of a run is a range").help("write `time = 0 s .. 250 s;`"),
+                    Diagnostic::error(Code::WrongKind, e.span, "the time of a run is a range")
+                        .help("write `time = 0 s .. 250 s;`"),
                 )),
             },
             "step" => self.step(setting, solve),
@@ -143,25 +146,27 @@ impl Checker<'_> {
     fn search(&mut self, e: &ast::Expr) {
         if e.as_name().is_none_or(|name| name.text != "residual") {
             self.sink.push(
-                Diagnostic::error(Code::UnknownName, e.span, "there is no such line search").help("write `search: residual`"),
+                Diagnostic::error(Code::UnknownName, e.span, "there is no such line search")
+                    .help("write `search: residual`"),
             );
         }
     }
 
     /// Which option of a method an argument sets.
     fn option(&mut self, method: &ast::Ident, arg: &ast::Arg, known: &[&str]) -> Checked<usize> {
-        let (text, span): (&str, Span) = arg.name.as_ref().map_or(("", arg.span), |name| (&name.text, name.span));
-        known.iter().position(|name| *name == text).ok_or(()).or_else(|()| {
+        let (text, span): (&str, Span) =
+            arg.name.as_ref().map_or(("", arg.span), |name| (&name.text, name.span));
+        known.iter().position(|name| *name == text).ok_or_else(|| {
             let list = known.iter().map(|name| format!("`{name}:`")).collect::<Vec<_>>().join(", ");
             let message = match text {
                 "" => format!("the settings of `{}` have names", method.text),
                 _ => format!("`{}` has no setting `{text}`", method.text),
             };
-            Err(self.report(
+            self.report(
                 Diagnostic::error(Code::UnknownArgument, span, message)
                     .help_did_you_mean(text, known.iter().copied())
                     .help(format!("it has {list}")),
-            ))
+            )
         })
     }
 

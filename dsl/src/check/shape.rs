@@ -122,7 +122,13 @@ impl Checker<'_> {
     }
 
     /// `a + b`, `a - b`, `a*b`, `a/b`, `a^b`.
-    pub(super) fn arithmetic(&mut self, op: Arithmetic, mut a: Expr, mut b: Expr, span: Span) -> Checked<Expr> {
+    pub(super) fn arithmetic(
+        &mut self,
+        op: Arithmetic,
+        mut a: Expr,
+        mut b: Expr,
+        span: Span,
+    ) -> Checked<Expr> {
         let ty = match op {
             Arithmetic::Add => self.same(&mut a, &mut b, span, "add")?,
             Arithmetic::Sub => self.same(&mut a, &mut b, span, "subtract")?,
@@ -145,19 +151,24 @@ impl Checker<'_> {
 
     fn no_arithmetic(&mut self, e: &Expr) -> Reported {
         let message = format!("a {} is no number to compute with", type_word(&e.ty));
-        self.report(Diagnostic::error(Code::ShapeMismatch, e.span, message).here(format!("this is {}", self.words(&e.ty))))
+        self.report(
+            Diagnostic::error(Code::ShapeMismatch, e.span, message)
+                .here(format!("this is {}", self.words(&e.ty))),
+        )
     }
 
     /// Shape and dimension of an operand.
     pub(super) fn operand(&mut self, e: &Expr) -> Checked<(Shape, Dimension)> {
-        value(&e.ty).ok_or(()).or_else(|()| Err(self.no_arithmetic(e)))
+        value(&e.ty).ok_or_else(|| self.no_arithmetic(e))
     }
 
     fn product_type(&mut self, a: &Expr, b: &Expr, span: Span) -> Checked<Type> {
         let ((s, d), (t, e)) = (self.operand(a)?, self.operand(b)?);
         let Some(shape) = product_shape(s, t) else {
             let help = match t {
-                Shape::Vector => "write `dot(a, b)` for a number, `outer(a, b)` for a tensor, `cross(a, b)` for a vector",
+                Shape::Vector => {
+                    "write `dot(a, b)` for a number, `outer(a, b)` for a tensor, `cross(a, b)` for a vector"
+                }
                 _ => "a tensor stands before the vector: `A*v`, or `transpose(A)*v`",
             };
             return Err(self.report(
@@ -190,15 +201,22 @@ impl Checker<'_> {
         match constant::exponent(exponent, &|id| self.let_value(id)) {
             Some(power) => Ok(Type::Value(Shape::Scalar, dimension.pow(power))),
             None => Err(self.report(
-                Diagnostic::error(Code::ExponentNotConstant, exponent.span, "the exponent must be a constant fraction here")
-                    .label(base.span, format!("this is {}", self.words(&base.ty)))
-                    .help("divide the base by a reference value first, then any exponent will do"),
+                Diagnostic::error(
+                    Code::ExponentNotConstant,
+                    exponent.span,
+                    "the exponent must be a constant fraction here",
+                )
+                .label(base.span, format!("this is {}", self.words(&base.ty)))
+                .help("divide the base by a reference value first, then any exponent will do"),
             )),
         }
     }
 
     pub(super) fn need_scalar(&mut self, e: &Expr, message: &str) -> Reported {
-        self.report(Diagnostic::error(Code::ScalarNeeded, e.span, message).here(format!("this is {}", self.words(&e.ty))))
+        self.report(
+            Diagnostic::error(Code::ScalarNeeded, e.span, message)
+                .here(format!("this is {}", self.words(&e.ty))),
+        )
     }
 
     /// Requires a scalar; gives its dimension.
@@ -237,7 +255,8 @@ impl Checker<'_> {
         let same_shape = matches!((value(&e.ty), value(ty)), (Some((s, _)), Some((t, _))) if s == t);
         let code = if same_shape { Code::DeclaredDimension } else { Code::DeclaredShape };
         let message = format!("{what} is {}, not {}", type_text(self, ty), type_text(self, &e.ty));
-        let mut diagnostic = Diagnostic::error(code, e.span, message).here(format!("this is {}", self.words(&e.ty)));
+        let mut diagnostic =
+            Diagnostic::error(code, e.span, message).here(format!("this is {}", self.words(&e.ty)));
         let wanted = Expr { ty: ty.clone(), ..e.clone() };
         if let Some(help) = self.missing_unit(&e, &wanted) {
             diagnostic = diagnostic.help(help);

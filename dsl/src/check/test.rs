@@ -15,7 +15,12 @@ impl Checker<'_> {
         }
         let checks = self.checks(&ast.checks, &mut Env::default());
         let needs_run = checks.iter().any(|check| self.needs_run(check));
-        self.rest.tests.push(Test { title: ast.title.value.clone(), checks, needs_run, span: ast.title.span });
+        self.rest.tests.push(Test {
+            title: ast.title.value.clone(),
+            checks,
+            needs_run,
+            span: ast.title.span,
+        });
     }
 
     /// The statements that are right.
@@ -44,7 +49,13 @@ impl Checker<'_> {
         }
     }
 
-    fn each(&mut self, name: &ast::Ident, over: &Over, checks: &[ast::Check], env: &mut Env) -> Checked<Check> {
+    fn each(
+        &mut self,
+        name: &ast::Ident,
+        over: &Over,
+        checks: &[ast::Check],
+        env: &mut Env,
+    ) -> Checked<Check> {
         let values = self.values_over(over, env);
         let depth = env.locals.len();
         let binding = match &values {
@@ -64,7 +75,8 @@ impl Checker<'_> {
     fn values_over(&mut self, over: &Over, env: &Env) -> Checked<(Type, Values)> {
         match over {
             Over::Steps { range, by } => {
-                let (from, to, by) = (self.expr(&range.low, env), self.expr(&range.high, env), self.expr(by, env));
+                let (from, to, by) =
+                    (self.expr(&range.low, env), self.expr(&range.high, env), self.expr(by, env));
                 let mut items = [from?, to?, by?];
                 let ty = self.all_same(&mut items, range.span(), "run between")?;
                 let [from, to, by] = items.map(settle);
@@ -73,18 +85,7 @@ impl Checker<'_> {
                 Ok((ty, Values::Range { from, to, by }))
             }
             Over::Set(set) => {
-                let unit = set.unit.as_ref().map(|unit| self.unit(unit)).transpose()?;
-                let mut items = Vec::new();
-                for item in &set.items {
-                    let value = self.expr(item, env)?;
-                    items.push(match unit {
-                        Some(unit) => {
-                            self.need_number(&value, "a member of a set with a unit")?;
-                            self.with_unit(settle(value), unit)
-                        }
-                        None => value,
-                    });
-                }
+                let mut items = self.members(&set.items, set.unit.as_ref(), env)?;
                 let ty = self.all_same(&mut items, set.span, "make a set of")?;
                 let ty = if ty == Type::Zero { Type::NUMBER } else { ty };
                 Ok((ty, Values::Set(items.into_iter().map(settle).collect())))

@@ -29,7 +29,8 @@ impl Checker<'_> {
                 Ok(Type::Law(arguments.into_iter().collect::<Checked<_>>()?, Box::new(result)))
             }
             TypeKind::Record(members) => {
-                let members = members.iter().map(|member| Ok((member.name.text.clone(), self.ty(&member.ty)?)));
+                let members =
+                    members.iter().map(|member| Ok((member.name.text.clone(), self.ty(&member.ty)?)));
                 Ok(Type::Record(members.collect::<Checked<_>>()?))
             }
             _ => Ok(Type::Value(Shape::Scalar, self.dimension(ty)?)),
@@ -40,7 +41,7 @@ impl Checker<'_> {
     fn dimension(&mut self, ty: &ast::TypeExpr) -> Checked<Dimension> {
         match &ty.kind {
             TypeKind::One => Ok(Dimension::NUMBER),
-            TypeKind::Named(name) => Dimension::named(name).ok_or(()).or_else(|()| Err(self.unknown_type(name, ty.span))),
+            TypeKind::Named(name) => Dimension::named(name).ok_or_else(|| self.unknown_type(name, ty.span)),
             TypeKind::Product(a, b) => Ok(self.dimension(a)? * self.dimension(b)?),
             TypeKind::Quotient(a, b) => Ok(self.dimension(a)? / self.dimension(b)?),
             TypeKind::Power(a, exponent) => Ok(self.dimension(a)?.pow(*exponent)),

@@ -13,7 +13,9 @@ impl Checker<'_> {
         let mut product = Ok(UnitExpr::ONE);
         for factor in &unit.factors {
             match Unit::find(&factor.symbol.text) {
-                Some(known) => product = product.map(|p: UnitExpr| p * UnitExpr::from(known).pow(factor.exponent)),
+                Some(known) => {
+                    product = product.map(|p: UnitExpr| p * UnitExpr::from(known).pow(factor.exponent))
+                }
                 None => product = Err(self.unknown_unit(&factor.symbol)),
             }
         }
@@ -66,7 +68,9 @@ impl Checker<'_> {
 pub(crate) fn words(units: &UnitSystem, ty: &Type) -> String {
     let text = type_text(ty);
     match ty {
-        Type::Value(_, dimension) if !dimension.is_number() => format!("{text} ({})", unit_text(units, *dimension)),
+        Type::Value(_, dimension) if !dimension.is_number() => {
+            format!("{text} ({})", unit_text(units, *dimension))
+        }
         _ => text,
     }
 }
@@ -97,7 +101,9 @@ pub(crate) fn type_text(ty: &Type) -> String {
 /// The coherent unit of a dimension, by its own symbol where it has one (`kPa` for `nN/um^2`); `1` for numbers.
 pub(crate) fn unit_text(units: &UnitSystem, dimension: Dimension) -> String {
     let scale = units.exact_scale(dimension);
-    let own = Unit::ALL.iter().find(|unit| unit.dimension == dimension && unit.scale == scale && !dimension.is_number());
+    let own = Unit::ALL
+        .iter()
+        .find(|unit| unit.dimension == dimension && unit.scale == scale && !dimension.is_number());
     own.map_or_else(|| units.unit_of(dimension), |unit| unit.symbol.to_owned())
 }
 

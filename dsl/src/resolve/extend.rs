@@ -5,8 +5,8 @@
 use super::{Program, imports};
 use crate::diagnostic::{Code, Diagnostic, Sink};
 use crate::source::{SourceId, SourceMap, Span};
-use crate::syntax::ast::{self, GeometryKind, ItemKind, Keyword, Replacement};
 use crate::syntax;
+use crate::syntax::ast::{self, GeometryKind, ItemKind, Keyword, Replacement};
 
 /// A text found by a [`Loader`].
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,7 +27,13 @@ pub fn assemble(main: SourceId, sources: &mut SourceMap, load: &mut Loader<'_>, 
     read(main, &mut Vec::new(), sources, load, sink)
 }
 
-fn read(id: SourceId, chain: &mut Vec<String>, sources: &mut SourceMap, load: &mut Loader<'_>, sink: &mut Sink) -> Program {
+fn read(
+    id: SourceId,
+    chain: &mut Vec<String>,
+    sources: &mut SourceMap,
+    load: &mut Loader<'_>,
+    sink: &mut Sink,
+) -> Program {
     let Some(source) = sources.get(id).cloned() else { return Program::default() };
     let file = syntax::parse(&source, sink);
     chain.push(source.name.clone());
@@ -37,7 +43,10 @@ fn read(id: SourceId, chain: &mut Vec<String>, sources: &mut SourceMap, load: &m
     let has_name = file.items.iter().any(|item| matches!(item.kind, ItemKind::Model(_)));
     if !has_name && !sink.has_errors() {
         let start = Span::new(id, 0, 0);
-        sink.push(Diagnostic::error(Code::Expected, start, "the model has no name").help("write `model NAME;` first"));
+        sink.push(
+            Diagnostic::error(Code::Expected, start, "the model has no name")
+                .help("write `model NAME;` first"),
+        );
     }
     for item in file.items {
         edit(item, &mut program, sources, sink);
@@ -60,18 +69,29 @@ fn base(
     });
     let Some((path, _)) = bases.next() else { return Program::default() };
     for (_, span) in bases {
-        sink.push(Diagnostic::error(Code::DuplicateName, span, "a model extends one other model").label(path.span, "this one"));
+        sink.push(
+            Diagnostic::error(Code::DuplicateName, span, "a model extends one other model")
+                .label(path.span, "this one"),
+        );
     }
     let loaded = match load(&path.value, from) {
         Ok(loaded) => loaded,
         Err(reason) => {
-            sink.push(Diagnostic::error(Code::UnknownFile, path.span, format!("cannot read `{}`: {reason}", path.value)));
+            sink.push(Diagnostic::error(
+                Code::UnknownFile,
+                path.span,
+                format!("cannot read `{}`: {reason}", path.value),
+            ));
             return Program::default();
         }
     };
     if chain.contains(&loaded.name) {
         let message = format!("`{}` extends itself", loaded.name);
-        sink.push(Diagnostic::error(Code::Cycle, path.span, message).help(format!("{} -> {}", chain.join(" -> "), loaded.name)));
+        sink.push(Diagnostic::error(Code::Cycle, path.span, message).help(format!(
+            "{} -> {}",
+            chain.join(" -> "),
+            loaded.name
+        )));
         return Program::default();
     }
     let id = sources.add(loaded.name, loaded.text);
@@ -87,7 +107,9 @@ fn edit(item: ast::Item, program: &mut Program, sources: &mut SourceMap, sink: &
         ItemKind::Import(import) => imports::import(&import, program, sources, sink),
         ItemKind::Replace(replacement) => replace(*replacement, docs, span, program, sink),
         ItemKind::Drop(dropped) => drop_item(&dropped, program, sink),
-        ItemKind::Coordinates(_) | ItemKind::Units(_) => add_single(ast::Item { docs, kind, span }, program, sink),
+        ItemKind::Coordinates(_) | ItemKind::Units(_) => {
+            add_single(ast::Item { docs, kind, span }, program, sink)
+        }
         kind => program.items.push(ast::Item { docs, kind, span }),
     }
 }
@@ -113,7 +135,15 @@ fn replace(new: Replacement, docs: String, span: Span, program: &mut Program, si
         }
         Replacement::Region(region) => {
             let name = region.name.clone();
-            replace_in_geometry(Keyword::Region, &name, GeometryKind::Region(region), docs, span, program, sink);
+            replace_in_geometry(
+                Keyword::Region,
+                &name,
+                GeometryKind::Region(region),
+                docs,
+                span,
+                program,
+                sink,
+            );
         }
         Replacement::Item(kind) => replace_item(ast::Item { docs, kind, span }, program, sink),
     }
@@ -139,7 +169,13 @@ fn replace_item(item: ast::Item, program: &mut Program, sink: &mut Sink) {
             let kind = GeometryKind::Let(value.clone());
             replace_in_geometry(word, &name, kind, item.docs, item.span, program, sink);
         }
-        (None, _, name) => nothing_there(word, name.as_ref().map_or(item.span, |name| name.span), text.as_deref(), program, sink),
+        (None, _, name) => nothing_there(
+            word,
+            name.as_ref().map_or(item.span, |name| name.span),
+            text.as_deref(),
+            program,
+            sink,
+        ),
     }
 }
 
@@ -267,7 +303,11 @@ fn keyword(kind: &ItemKind) -> Option<Keyword> {
         ItemKind::Output(_) => Keyword::Output,
         ItemKind::Sweep(_) => Keyword::Sweep,
         ItemKind::Test(_) => Keyword::Test,
-        ItemKind::Model(_) | ItemKind::Import(_) | ItemKind::Extend(_) | ItemKind::Replace(_) | ItemKind::Drop(_) => return None,
+        ItemKind::Model(_)
+        | ItemKind::Import(_)
+        | ItemKind::Extend(_)
+        | ItemKind::Replace(_)
+        | ItemKind::Drop(_) => return None,
     })
 }
 

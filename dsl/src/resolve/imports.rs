@@ -10,7 +10,11 @@ use crate::syntax::{self, ast};
 pub(super) fn import(item: &ast::Import, program: &mut Program, sources: &mut SourceMap, sink: &mut Sink) {
     if let Some(found) = taken(item, &mut program.modules, sources, sink) {
         for import in found {
-            if !program.imports.iter().any(|known| known.name.text == import.name.text && known.module == import.module) {
+            if !program
+                .imports
+                .iter()
+                .any(|known| known.name.text == import.name.text && known.module == import.module)
+            {
                 program.imports.push(import);
             }
         }
@@ -18,7 +22,12 @@ pub(super) fn import(item: &ast::Import, program: &mut Program, sources: &mut So
 }
 
 /// The names of a `use` item that exist; `None` if there is no such module.
-fn taken(item: &ast::Import, modules: &mut Vec<Module>, sources: &mut SourceMap, sink: &mut Sink) -> Option<Vec<Import>> {
+fn taken(
+    item: &ast::Import,
+    modules: &mut Vec<Module>,
+    sources: &mut SourceMap,
+    sink: &mut Sink,
+) -> Option<Vec<Import>> {
     let [root, name] = item.path.as_slice() else {
         unknown_module(item, sink);
         return None;
@@ -29,13 +38,17 @@ fn taken(item: &ast::Import, modules: &mut Vec<Module>, sources: &mut SourceMap,
     };
     let module = read(found, modules, sources, sink);
     let functions: Vec<&str> = modules[module].functions.iter().map(|(_, f)| f.name.text.as_str()).collect();
-    let (known, unknown): (Vec<_>, Vec<_>) = item.names.iter().partition(|name| functions.contains(&name.text.as_str()));
+    let (known, unknown): (Vec<_>, Vec<_>) =
+        item.names.iter().partition(|name| functions.contains(&name.text.as_str()));
     for name in unknown {
         let message = format!("`{}` has no function `{}`", modules[module].name, name.text);
         sink.push(
             Diagnostic::error(Code::UnknownName, name.span, message)
                 .help_did_you_mean(&name.text, functions.iter().copied())
-                .help(format!("it has {}", functions.iter().map(|f| format!("`{f}`")).collect::<Vec<_>>().join(", "))),
+                .help(format!(
+                    "it has {}",
+                    functions.iter().map(|f| format!("`{f}`")).collect::<Vec<_>>().join(", ")
+                )),
         );
     }
     Some(known.into_iter().map(|name| Import { name: name.clone(), module }).collect())
@@ -46,14 +59,23 @@ fn unknown_module(item: &ast::Import, sink: &mut Sink) {
     let path = item.path.iter().map(|part| part.text.as_str()).collect::<Vec<_>>().join("::");
     let known = library::MODULES.map(|module| format!("`std::{}`", module.name)).join(", ");
     sink.push(
-        Diagnostic::error(Code::UnknownName, first.span.to(last.span), format!("there is no module `{path}`"))
-            .help_did_you_mean(&last.text, library::MODULES.iter().map(|module| module.name))
-            .help(format!("the modules are {known}")),
+        Diagnostic::error(
+            Code::UnknownName,
+            first.span.to(last.span),
+            format!("there is no module `{path}`"),
+        )
+        .help_did_you_mean(&last.text, library::MODULES.iter().map(|module| module.name))
+        .help(format!("the modules are {known}")),
     );
 }
 
 /// Index of a library module, parsed on first use together with those that it uses itself.
-fn read(found: library::Module, modules: &mut Vec<Module>, sources: &mut SourceMap, sink: &mut Sink) -> usize {
+fn read(
+    found: library::Module,
+    modules: &mut Vec<Module>,
+    sources: &mut SourceMap,
+    sink: &mut Sink,
+) -> usize {
     let name = format!("std::{}", found.name);
     if let Some(known) = modules.iter().position(|module| module.name == name) {
         return known;

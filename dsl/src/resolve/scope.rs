@@ -105,18 +105,23 @@ impl Scope {
     pub fn declare(&mut self, name: &Ident, symbol: Symbol, sink: &mut Sink) {
         if Word::find(&name.text).is_some() {
             let message = format!("`{}` is a word of the language", name.text);
-            return sink.push(Diagnostic::error(Code::ReservedName, name.span, message).help("choose another name"));
+            return sink
+                .push(Diagnostic::error(Code::ReservedName, name.span, message).help("choose another name"));
         }
         let Some((_, first)) = self.names.get(&name.text) else {
             self.names.insert(name.text.clone(), (symbol, name.span));
             return;
         };
         let message = format!("`{}` is declared twice", name.text);
-        let diagnostic = Diagnostic::error(Code::DuplicateName, name.span, message).label(*first, "already declared here");
+        let diagnostic =
+            Diagnostic::error(Code::DuplicateName, name.span, message).label(*first, "already declared here");
         sink.push(if first.source == name.span.source {
             diagnostic
         } else {
-            diagnostic.help(format!("to change what the base declares, write `replace ..` before it: `replace let {} = ..;`", name.text))
+            diagnostic.help(format!(
+                "to change what the base declares, write `replace ..` before it: `replace let {} = ..;`",
+                name.text
+            ))
         });
     }
 

@@ -5,6 +5,7 @@
 //! - [`physics`]: the statements of the blocks.
 //! - [`states`]: equations of states.
 //! - [`observe`]: which scalars are rows of the system (functionals) and which are only looked at (observables).
+//! - [`settings`]: what depends on parameters alone.
 //! - [`output`], [`event`], [`expect`]: tables, frames, events, run-time tests.
 
 mod degree;
@@ -13,11 +14,13 @@ mod expect;
 mod observe;
 mod output;
 mod physics;
+pub mod print;
+pub mod settings;
 mod states;
 mod vary;
 
 use crate::diagnostic::Diagnostic;
-use crate::lower::{Lowered, Lowering, Region};
+use crate::lower::{Lowered, Lowering, Part, Region, SymbolKind};
 use crate::model::{BlockId, FieldId, Model, PairId};
 use crate::scalar::Id;
 use crate::source::Span;
@@ -26,7 +29,7 @@ pub use event::{Action, Event, Trigger};
 pub use expect::{Expectation, RunTest};
 pub use observe::{Functional, FunctionalKind};
 pub use output::{Column, FrameColumn, Frames, PointForm, PointInput, Table, When};
-pub use states::{Equation, StateSystem};
+pub use states::{Equation, StateSystem, size_of_kind};
 pub use vary::Term;
 
 /// Everything that is to be emitted, apart from geometry and parameters, which the model has.
@@ -34,6 +37,8 @@ pub use vary::Term;
 pub struct Forms<'m> {
     /// The pool and the meaning of its symbols.
     pub lowering: Lowering<'m>,
+    /// What depends on parameters alone.
+    pub settings: settings::Settings,
     /// Integrals of the balance.
     pub terms: Vec<Term>,
     /// Prescribed components.
@@ -104,6 +109,7 @@ pub struct Coupling {
 /// Everything that the compiler cannot do, in order of place.
 pub fn build(model: &Model) -> Result<Forms<'_>, Vec<Diagnostic>> {
     let mut builder = Builder { lowering: Lowering::new(model), problems: Vec::new() };
+    let settings = builder.settings();
     let physics = builder.physics();
     let functionals = builder.functionals(&physics);
     let states = builder.states(&physics.differences);
@@ -120,12 +126,14 @@ pub fn build(model: &Model) -> Result<Forms<'_>, Vec<Diagnostic>> {
     roots.extend(builder.run_roots());
     let observables = builder.observables(&rows, &roots);
     let Builder { lowering, problems } = builder;
-    if !problems.is_empty() {
-        return Err(problems);
-    }
+    let settings = match settings {
+        Some(settings) if problems.is_empty() => settings,
+        _ => return Err(problems),
+    };
     let physics::Physics { terms, holds, contacts, couplings, .. } = physics;
     Ok(Forms {
         lowering,
+        settings,
         terms,
         holds,
         contacts,
@@ -140,6 +148,19 @@ pub fn build(model: &Model) -> Result<Forms<'_>, Vec<Diagnostic>> {
         frames,
         tests,
     })
+}
+
+impl Forms<'_> {
+    /// An integral as a term that nobody varies.
+    pub fn plain_term(&mut self, name: &str, span: Span, part: Part) -> Term {
+        let origin = vary::Origin { name: name.to_owned(), block: None, span };
+        vary::plain(&mut self.lowering, origin, part.region, part.density)
+    }
+
+    /// `d root / d unknown + alpha d root / d (rate of the unknown)` of every root.
+    pub fn derivatives_with_rate(&mut self, roots: &[Id], unknown: SymbolKind) -> Vec<Id> {
+        vary::with_rate(&mut self.lowering, roots, unknown, vary::rate_of(unknown))
+    }
 }
 
 /// Forms in the making; problems are collected so that all are reported.

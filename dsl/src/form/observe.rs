@@ -118,7 +118,7 @@ fn functional(lowering: &mut Lowering<'_>, quantity: usize) -> Lowered<Functiona
             FunctionalKind::Integral(terms)
         }
         QuantityKind::Point(at, region, values) => {
-            let form = PointForm::new(lowering, &region, values.into_iter().map(|value| vec![value]).collect())?;
+            let form = PointForm::new(lowering, &region, values.into_iter().map(|value| vec![value]).collect());
             FunctionalKind::Point(at, form.with_derivatives(lowering))
         }
         QuantityKind::Extreme(..) | QuantityKind::PairExtreme(..) | QuantityKind::Force(..) => {

@@ -4,8 +4,9 @@ use super::observe::observed;
 use super::Builder;
 use crate::derive;
 use crate::lower::{FieldInput, Lowered, Lowering, Region, SymbolKind, unsupported};
-use crate::model::{Every, FieldId, Shape, Start};
+use crate::model::{Every, FieldId, Shape, Start, Type};
 use crate::scalar::{Id, symbols_of};
+use ansatz_units::Dimension;
 
 /// When output is written.
 #[derive(Clone, Debug)]
@@ -21,7 +22,7 @@ pub enum When {
 #[allow(missing_docs)]
 pub struct Column {
     pub name: String,
-    /// SI value of one display unit, and its text.
+    /// Value of one display unit in the model's units, and its text.
     pub unit: (f64, String),
     pub value: Id,
 }
@@ -82,7 +83,7 @@ pub struct PointForm {
 
 impl PointForm {
     /// Collects what the outputs read.
-    pub(super) fn new(lowering: &mut Lowering<'_>, region: &Region, outputs: Vec<Vec<Id>>) -> Lowered<PointForm> {
+    pub(super) fn new(lowering: &mut Lowering<'_>, region: &Region, outputs: Vec<Vec<Id>>) -> PointForm {
         let outputs: Vec<Vec<Id>> = outputs.iter().map(|roots| super::vary::thaw(lowering, roots)).collect();
         let mut inputs: Vec<PointInput> = symbols_of(&lowering.pool, &outputs.concat())
             .into_iter()
@@ -93,11 +94,11 @@ impl PointForm {
             })
             .collect();
         inputs.sort_unstable();
-        Ok(PointForm { region: region.clone(), inputs, outputs })
+        PointForm { region: region.clone(), inputs, outputs }
     }
 
     /// From the densities of a quantity, one for all regions or one for each.
-    pub fn of_values(lowering: &mut Lowering<'_>, region: &Region, values: &[Id]) -> Lowered<PointForm> {
+    pub fn of_values(lowering: &mut Lowering<'_>, region: &Region, values: &[Id]) -> PointForm {
         PointForm::new(lowering, region, values.iter().map(|&value| vec![value]).collect())
     }
 
@@ -174,9 +175,15 @@ fn lower_table<'m>(lowering: &mut Lowering<'m>, rows: &[usize], table: &'m crate
         lowering.name_after(&column.name);
         let value = lowering.global_scalar(&column.value)?;
         let value = observed(lowering, rows, value)?;
-        columns.push(Column { name: column.name.clone(), unit: column.unit.clone(), value });
+        columns.push(Column { name: column.name.clone(), unit: display_unit(lowering, column), value });
     }
     Ok(Table { file: table.file.clone(), every: lower_when(lowering, &table.every)?, columns })
+}
+
+/// Value of a column's display unit in the model's units, and its text.
+fn display_unit(lowering: &Lowering<'_>, column: &crate::model::Column) -> (f64, String) {
+    let dimension = if let Type::Value(_, dimension) = column.value.ty { dimension } else { Dimension::NUMBER };
+    (lowering.model.units.to_internal(column.unit.0, dimension), column.unit.1.clone())
 }
 
 fn lower_frames<'m>(lowering: &mut Lowering<'m>, rows: &[usize], frames: &'m crate::model::Frames) -> Lowered<Frames> {
@@ -201,11 +208,11 @@ fn lower_frames<'m>(lowering: &mut Lowering<'m>, rows: &[usize], frames: &'m cra
     let sizes = parts[0].1.iter().map(Vec::len);
     let columns = frames.columns.iter().zip(sizes).map(|(column, components)| {
         offset += components;
-        FrameColumn { name: column.name.clone(), unit: column.unit.clone(), components, offset: offset - components }
+        FrameColumn { name: column.name.clone(), unit: display_unit(lowering, column), components, offset: offset - components }
     });
     let columns = columns.collect();
     let outputs = parts.into_iter().map(|(_, columns)| columns.concat()).collect();
-    let function = PointForm::new(lowering, &region, outputs)?;
+    let function = PointForm::new(lowering, &region, outputs);
     Ok(Frames { region, every: lower_when(lowering, &frames.every)?, columns, function })
 }
 

@@ -161,7 +161,7 @@ impl Typical {
 }
 
 /// 1 for pure numbers, else the geometric mean of the parameters of this dimension.
-fn size_of_kind(model: &Model, dimension: Dimension, parameters: &[f64]) -> f64 {
+pub fn size_of_kind(model: &Model, dimension: Dimension, parameters: &[f64]) -> f64 {
     if dimension.is_number() {
         return 1.0;
     }

@@ -173,6 +173,13 @@ fn tangent(lowering: &mut Lowering<'_>, flux: &[Id]) -> (Vec<FieldInput>, Vec<Ve
     (trials, rows)
 }
 
+/// An integral that nobody varies.
+pub(super) fn plain(lowering: &mut Lowering<'_>, origin: Origin, region: Region, density: Id) -> Term {
+    let density = thaw(lowering, &[density])[0];
+    let variation = Variation { value: Some(density), ..Variation::default() };
+    linearise(lowering, origin, region, variation)
+}
+
 /// `d root / d value + alpha d root / d rate` of every root.
 pub(super) fn with_rate(lowering: &mut Lowering<'_>, roots: &[Id], value: SymbolKind, rate: SymbolKind) -> Vec<Id> {
     let (value, rate) = (lowering.symbols.symbol(value), lowering.symbols.symbol(rate));

@@ -148,6 +148,12 @@ impl Kernel {
         self.inputs.iter().any(|input| of(&input.input)) || self.arguments().iter().any(of)
     }
 
+    /// Whether basis functions of a field are read as values.
+    pub fn needs_values(&self, field: FieldId) -> bool {
+        let of = |input: &FieldInput| input.field == field && input.derivative.is_none();
+        self.inputs.iter().any(|input| of(&input.input)) || self.arguments().iter().any(of)
+    }
+
     /// Tests and trials of the job.
     fn arguments(&self) -> Vec<FieldInput> {
         match &self.job {

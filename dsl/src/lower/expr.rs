@@ -111,6 +111,7 @@ impl<'m> Lowering<'m> {
         let value = self.expr(&definition.value);
         (self.naming, self.frame) = (outer, frame);
         let value = value?;
+        self.hint(&value, &definition.name);
         self.known_lets.insert((id, self.epoch), value.clone());
         Ok(value)
     }
@@ -125,6 +126,7 @@ impl<'m> Lowering<'m> {
             return Err(internal(span, "a local name has no value"));
         };
         let value = self.expr(expr)?;
+        self.hint(&value, &self.model.locals[id.0]);
         self.frame.known.insert((id, self.epoch), value.clone());
         Ok(value)
     }
@@ -176,7 +178,9 @@ impl<'m> Lowering<'m> {
         let outer = std::mem::replace(&mut self.frame, frame);
         let result = self.expr(&function.result);
         self.frame = outer;
-        result
+        let result = result?;
+        self.hint(&result, &function.name);
+        Ok(result)
     }
 
     fn apply_law(&mut self, law: Value, arguments: Vec<Value>, span: Span) -> Lowered<Value> {
@@ -260,8 +264,12 @@ impl<'m> Lowering<'m> {
                     })
                     .ok_or_else(|| internal(span, "`polar` takes a point, a length and an angle"))
             }
-            _ => algebra::builtin(&mut self.pool, builtin, &values)
-                .ok_or_else(|| internal(span, "shapes do not fit")),
+            _ => {
+                let value = algebra::builtin(&mut self.pool, builtin, &values);
+                let value = value.ok_or_else(|| internal(span, "shapes do not fit"))?;
+                self.hint_builtin(builtin, arguments.first(), &value);
+                Ok(value)
+            }
         }
     }
 

@@ -77,6 +77,8 @@ pub struct Lowering<'m> {
     pub tables: Vec<Table>,
     /// Values of finished runs that tests read.
     pub run_values: Vec<RunValue>,
+    /// Names of scalars after what the model calls them: `det_F`, `C_rr`. For readers of emitted code.
+    pub hints: BTreeMap<Id, String>,
     place: Place,
     frame: Frame<'m>,
     overrides: BTreeMap<LetId, Value>,
@@ -102,6 +104,7 @@ impl<'m> Lowering<'m> {
             measures: Vec::new(),
             tables: Vec::new(),
             run_values: Vec::new(),
+            hints: BTreeMap::new(),
             place: Place::Global,
             frame: Frame::default(),
             overrides: BTreeMap::new(),

@@ -1,0 +1,169 @@
+//! Fields, holds, contact pairs and functions at points.
+
+use super::body::{Sources, assignments, block, body, closure};
+use super::layout::Slots;
+use super::place;
+use crate::form::{Contact, Forms, Hold, PointForm};
+use crate::lower::{Lowering, Region, SymbolKind, region_names};
+use crate::model::{Model, Shape, Space};
+use crate::scalar::{Id, symbols_of};
+use crate::source::SourceMap;
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+/// `Domain::Cells(..)` or `Domain::Edges(..)`.
+pub fn domain(model: &Model, region: &Region) -> TokenStream {
+    let names = region_names(model, region);
+    match region {
+        Region::Cells(_) => quote!(Domain::Cells(&[#(#names),*])),
+        Region::Edges(_) => quote!(Domain::Edges(&[#(#names),*])),
+    }
+}
+
+/// The entries of `Program::fields`.
+pub fn fields(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
+    let (model, starts) = (forms.lowering.model, forms.starts.clone());
+    let entries = model.fields.iter().zip(&starts).map(|(field, start)| {
+        let (name, unit) = (&field.name, model.units.unit_of(field.dimension));
+        let names: Vec<&str> = match field.shape {
+            Shape::Scalar => vec![""],
+            _ => model.coordinates.names.iter().map(String::as_str).collect(),
+        };
+        let components = Literal::usize_unsuffixed(names.len());
+        let space = if field.space == Space::P1 { quote!(Space::P1) } else { quote!(Space::P2) };
+        let regions = Region::of(&field.domain).map(|region| region_names(model, &region)).unwrap_or_default();
+        let start = at_point(&mut forms.lowering, slots, start, true);
+        quote!(Field {
+            name: #name,
+            components: #components,
+            component_names: &[#(#names),*],
+            space: #space,
+            regions: &[#(#regions),*],
+            unit: #unit,
+            start: #start,
+        })
+    });
+    let entries: Vec<TokenStream> = entries.collect();
+    quote!(&[#(#entries),*])
+}
+
+/// `|x, g, out| ..` or `|x, g| value`.
+fn at_point(lowering: &mut Lowering<'_>, slots: &Slots, roots: &[Id], writes: bool) -> TokenStream {
+    let reads_point = reads(lowering, roots, |kind| matches!(kind, SymbolKind::Coordinate(_)));
+    let body = body(lowering, slots, Sources::default(), roots);
+    let x = if reads_point { quote!(x) } else { quote!(_) };
+    let g = if body.reads_globals { quote!(g) } else { quote!(_) };
+    if writes {
+        let code = assignments(&body);
+        quote!(|#x, #g, out| { #code })
+    } else {
+        let value = block(&body);
+        quote!(|#x, #g| #value)
+    }
+}
+
+fn reads(lowering: &Lowering<'_>, roots: &[Id], wanted: impl Fn(SymbolKind) -> bool) -> bool {
+    symbols_of(&lowering.pool, roots).into_iter().any(|symbol| wanted(lowering.symbols.kind(symbol)))
+}
+
+/// The entries of `Program::holds`.
+pub fn holds(forms: &mut Forms<'_>, slots: &Slots, sources: &SourceMap) -> TokenStream {
+    let (model, holds) = (forms.lowering.model, forms.holds.clone());
+    let entries: Vec<TokenStream> = holds.iter().map(|hold| one_hold(&mut forms.lowering, slots, sources, model, hold)).collect();
+    quote!(&[#(#entries),*])
+}
+
+fn one_hold(lowering: &mut Lowering<'_>, slots: &Slots, sources: &SourceMap, model: &Model, hold: &Hold) -> TokenStream {
+    let [field, component] = [hold.field.0, hold.component].map(Literal::usize_unsuffixed);
+    let (domain, place) = (domain(model, &hold.region), place(sources, hold.span));
+    let value = at_point(lowering, slots, &[hold.value], false);
+    quote!(Hold { field: #field, component: #component, domain: #domain, place: #place, value: #value })
+}
+
+/// The entries of `Program::pairs`.
+pub fn pairs(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
+    let (model, searches) = (forms.lowering.model, forms.settings.searches.clone());
+    let entries = model.pairs.iter().zip(&forms.displacements).zip(searches).map(|((pair, displacement), search)| {
+        let side = |domain| Region::of(domain).map(|region| region_names(model, &region)).unwrap_or_default();
+        let (name, first, second) = (&pair.name, side(&pair.first), side(&pair.second));
+        let (displacement, search) = (Literal::usize_unsuffixed(displacement.0), closure(&mut forms.lowering, slots, search));
+        quote!(Pair { name: #name, first: &[#(#first),*], second: &[#(#second),*], displacement: #displacement, search: #search })
+    });
+    let entries: Vec<TokenStream> = entries.collect();
+    quote!(&[#(#entries),*])
+}
+
+/// The entries of `Program::pair_integrals`.
+pub fn pair_integrals(forms: &mut Forms<'_>, slots: &Slots, sources: &SourceMap) -> TokenStream {
+    let contacts = forms.contacts.clone();
+    let entries: Vec<TokenStream> = contacts.iter().map(|contact| pair_integral(&mut forms.lowering, slots, sources, contact)).collect();
+    quote!(&[#(#entries),*])
+}
+
+fn pair_integral(lowering: &mut Lowering<'_>, slots: &Slots, sources: &SourceMap, contact: &Contact) -> TokenStream {
+    let (name, place, both) = (&contact.name, place(sources, contact.span), contact.both);
+    let [block, pair] = [contact.block.0, contact.pair.0].map(Literal::usize_unsuffixed);
+    let reads_gap = reads(lowering, &contact.law, |kind| matches!(kind, SymbolKind::Gap(_)));
+    let reads_point = reads(lowering, &contact.law, |kind| matches!(kind, SymbolKind::Coordinate(_)));
+    let body = body(lowering, slots, Sources::default(), &contact.law);
+    let gap = if reads_gap { quote!(gap) } else { quote!(_) };
+    let x = if reads_point { quote!(x) } else { quote!(_) };
+    let g = if body.reads_globals { quote!(g) } else { quote!(_) };
+    let (statements, results) = (&body.statements, &body.results);
+    quote!(PairIntegral {
+        name: #name,
+        place: #place,
+        block: #block,
+        pair: #pair,
+        both: #both,
+        law: |#gap, #x, #g| { #(#statements)* [#(#results),*] },
+    })
+}
+
+/// `PointFunction { .. }`.
+pub fn point_function(lowering: &mut Lowering<'_>, slots: &Slots, form: &PointForm) -> TokenStream {
+    let model = lowering.model;
+    let kinds: Vec<SymbolKind> = form.inputs.iter().map(|input| input.kind()).collect();
+    let inputs = form.inputs.iter().map(|one| {
+        let [field, component] = [one.input.field.0, one.input.component].map(Literal::usize_unsuffixed);
+        let derivative = match one.input.derivative.map(Literal::usize_unsuffixed) {
+            Some(direction) => quote!(Some(#direction)),
+            None => quote!(None),
+        };
+        let rate = one.rate;
+        quote!(PointInput { field: #field, component: #component, derivative: #derivative, rate: #rate })
+    });
+    let all: Vec<Id> = form.outputs.concat();
+    let reads_point = reads(lowering, &all, |kind| matches!(kind, SymbolKind::Coordinate(_)));
+    let reads_table = reads(lowering, &all, |kind| matches!(kind, SymbolKind::Table(_)));
+    let regions = match &form.region {
+        Region::Cells(_) => region_names(model, &form.region),
+        Region::Edges(_) => Vec::new(),
+    };
+    let region = quote!(region);
+    let sources = Sources { inputs: &kinds, region: Some(&region) };
+    let bodies: Vec<_> = form.outputs.iter().map(|outputs| body(lowering, slots, sources, outputs)).collect();
+    let reads_globals = bodies.iter().any(|body| body.reads_globals);
+    let chooses = bodies.len() > 1 || reads_table;
+    let outputs = Literal::usize_unsuffixed(form.outputs.first().map_or(0, Vec::len));
+    let code = match bodies.as_slice() {
+        [one] => assignments(one),
+        many => {
+            let arms = many.iter().enumerate().map(|(k, body)| {
+                let (k, code) = (Literal::usize_unsuffixed(k), assignments(body));
+                let pattern = if k.to_string() == (many.len() - 1).to_string() { quote!(_) } else { quote!(#k) };
+                quote!(#pattern => { #code })
+            });
+            quote!(match region { #(#arms)* })
+        }
+    };
+    let name = |used: bool, name: TokenStream| if used { name } else { quote!(_) };
+    let (region, x) = (name(chooses, quote!(region)), name(reads_point, quote!(x)));
+    let (values, g) = (name(!kinds.is_empty(), quote!(inputs)), name(reads_globals, quote!(g)));
+    quote!(PointFunction {
+        inputs: &[#(#inputs),*],
+        outputs: #outputs,
+        regions: &[#(#regions),*],
+        evaluate: |#region, #x, #values, #g, out| { #code },
+    })
+}

@@ -1,0 +1,61 @@
+//! Stage 6 of 6: forms and kernels become Rust. Input: [`Forms`] and their kernels. Output: the text of a module with `Parameters`,
+//! `PROGRAM` and `simulation`, formatted. The only place that names `quote`; emitted code names only `::ansatz::generated`.
+
+mod body;
+mod expression;
+mod fields;
+mod geometry;
+mod integral;
+mod kernel;
+mod layout;
+mod outputs;
+mod parameters;
+mod program;
+mod states;
+mod tables;
+mod tests;
+
+use crate::diagnostic::Diagnostic;
+use crate::form::Forms;
+use crate::lower::internal;
+use crate::source::{SourceMap, Span};
+use proc_macro2::{Ident, Span as TokenSpan, TokenStream};
+use quote::quote;
+
+pub use program::Plan;
+
+/// The Rust text of a model.
+///
+/// # Errors
+/// An internal error if the emitted tokens are no Rust.
+pub fn rust(forms: &mut Forms<'_>, plan: &Plan, sources: &SourceMap) -> Result<String, Box<Diagnostic>> {
+    let tokens = program::module(forms, plan, sources);
+    let file: syn::File = syn::parse2(tokens).map_err(|error| internal(Span::default(), &format!("emitted text is no Rust: {error}")))?;
+    Ok(prettyplease::unparse(&file))
+}
+
+/// An identifier from a name of the model: other characters become underscores, words of Rust get one behind.
+fn ident(name: &str) -> Ident {
+    let mut text: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    if text.starts_with(|c: char| c.is_ascii_digit()) || text.is_empty() {
+        text.insert(0, '_');
+    }
+    if text == "_" || syn::parse_str::<Ident>(&text).is_err() {
+        text.push('_');
+    }
+    Ident::new(&text, TokenSpan::call_site())
+}
+
+/// `name:line` of a span.
+fn place(sources: &SourceMap, span: Span) -> String {
+    match sources.get(span.source) {
+        Some(source) => format!("{}:{}", source.name, source.position(span.start).line),
+        None => String::from("unknown place"),
+    }
+}
+
+/// `#[doc = " .."]` lines of a text.
+fn docs(text: &str) -> TokenStream {
+    let lines = text.lines().map(|line| format!(" {line}"));
+    quote!(#(#[doc = #lines])*)
+}

@@ -1,0 +1,183 @@
+//! Functionals, observables, events, tables and frames.
+
+use super::body::{closure, list};
+use super::expression::number;
+use super::fields::{domain, point_function};
+use super::integral::Emitted;
+use super::layout::Slots;
+use super::program::Plan;
+use crate::form::{Action, Event, Forms, Frames, FunctionalKind, PointForm, Table, Trigger, When};
+use crate::kernel::Kernels;
+use crate::lower::{Lowering, QuantityKind, Region, SymbolKind, region_names};
+use crate::model::Reduction;
+use crate::scalar::{Id, symbols_of};
+use crate::source::SourceMap;
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+/// The entries of `Program::functionals`.
+pub fn functionals(forms: &mut Forms<'_>, plan: &Plan, emitted: &mut Emitted, slots: &Slots, sources: &SourceMap) -> TokenStream {
+    let functionals = forms.functionals.clone();
+    let entries = functionals.iter().zip(&plan.functionals).map(|(functional, kernels)| {
+        let quantity = &forms.lowering.quantities[functional.quantity];
+        let (name, unit) = (quantity.name.clone(), forms.lowering.model.units.unit_of(quantity.dimension));
+        let kind = match &functional.kind {
+            FunctionalKind::Integral(terms) => {
+                let integrals = terms.iter().zip(kernels).map(|(term, kernels)| emitted.integral(&forms.lowering, slots, sources, term, kernels));
+                let integrals: Vec<TokenStream> = integrals.collect();
+                quote!(FunctionalKind::Integral(&[#(#integrals),*]))
+            }
+            FunctionalKind::Point(at, form) => {
+                let at = list(&mut forms.lowering, slots, at, &|values| quote!([#(#values),*]));
+                let function = point_function(&mut forms.lowering, slots, form);
+                quote!(FunctionalKind::Point { at: #at, function: #function })
+            }
+        };
+        quote!(Functional { name: #name, unit: #unit, kind: #kind })
+    });
+    let entries: Vec<TokenStream> = entries.collect();
+    quote!(&[#(#entries),*])
+}
+
+/// The entries of `Program::observables`.
+pub fn observables(forms: &mut Forms<'_>, plan: &Plan, emitted: &mut Emitted, slots: &Slots, sources: &SourceMap) -> TokenStream {
+    let quantities = forms.observables.clone();
+    let entries = quantities.iter().zip(&plan.observables).map(|(&quantity, parts)| {
+        let quantity = forms.lowering.quantities[quantity].clone();
+        let (name, unit) = (&quantity.name, forms.lowering.model.units.unit_of(quantity.dimension));
+        let integrals: Vec<TokenStream> =
+            parts.iter().map(|(term, kernels): &(_, Kernels)| emitted.integral(&forms.lowering, slots, sources, term, kernels)).collect();
+        let kind = observable(&mut forms.lowering, slots, &quantity.kind, &integrals);
+        quote!(Observable { name: #name, unit: #unit, kind: #kind })
+    });
+    let entries: Vec<TokenStream> = entries.collect();
+    quote!(&[#(#entries),*])
+}
+
+fn observable(lowering: &mut Lowering<'_>, slots: &Slots, kind: &QuantityKind, integrals: &[TokenStream]) -> TokenStream {
+    let model = lowering.model;
+    match kind {
+        QuantityKind::Integral(_) => quote!(ObservableKind::Integral(&[#(#integrals),*])),
+        QuantityKind::Extreme(reduction, region, values) => {
+            let function = values_at_points(lowering, slots, region, values);
+            let domain = domain(model, region);
+            match reduction {
+                Reduction::Min => quote!(ObservableKind::Min(#domain, #function)),
+                _ => quote!(ObservableKind::Max(#domain, #function)),
+            }
+        }
+        QuantityKind::Point(at, region, values) => {
+            let at = list(lowering, slots, at, &|values| quote!([#(#values),*]));
+            let function = values_at_points(lowering, slots, region, values);
+            quote!(ObservableKind::Point(#at, #function))
+        }
+        QuantityKind::PairExtreme(reduction, pair, value) => {
+            let pair = Literal::usize_unsuffixed(pair.0);
+            let function = of_gap(lowering, slots, *value);
+            match reduction {
+                Reduction::Min => quote!(ObservableKind::PairMin(#pair, #function)),
+                _ => quote!(ObservableKind::PairMax(#pair, #function)),
+            }
+        }
+        QuantityKind::Force(block, pieces, field, component) => {
+            let domain = domain(model, &Region::Edges(pieces.clone()));
+            let [block, field, component] = [block.0, field.0, *component].map(Literal::usize_unsuffixed);
+            quote!(ObservableKind::Force { block: #block, domain: #domain, field: #field, component: #component })
+        }
+    }
+}
+
+fn values_at_points(lowering: &mut Lowering<'_>, slots: &Slots, region: &Region, values: &[Id]) -> TokenStream {
+    let form = PointForm::of_values(lowering, region, values);
+    point_function(lowering, slots, &form)
+}
+
+/// `|gap, g| value`.
+fn of_gap(lowering: &mut Lowering<'_>, slots: &Slots, value: Id) -> TokenStream {
+    let reads_gap =
+        symbols_of(&lowering.pool, &[value]).into_iter().any(|symbol| matches!(lowering.symbols.kind(symbol), SymbolKind::Gap(_)));
+    let body = super::body::body(lowering, slots, super::body::Sources::default(), &[value]);
+    let gap = if reads_gap { quote!(gap) } else { quote!(_) };
+    let g = if body.reads_globals { quote!(g) } else { quote!(_) };
+    let value = super::body::block(&body);
+    quote!(|#gap, #g| #value)
+}
+
+/// The entries of `Program::events`.
+pub fn events(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
+    let events = forms.events.clone();
+    let entries: Vec<TokenStream> = events.iter().map(|event| one_event(&mut forms.lowering, slots, event)).collect();
+    quote!(&[#(#entries),*])
+}
+
+fn one_event(lowering: &mut Lowering<'_>, slots: &Slots, event: &Event) -> TokenStream {
+    let (name, doc) = (&event.name, &event.doc);
+    let trigger = match &event.trigger {
+        Trigger::When { condition, duration, also } => {
+            let [condition, duration, also] = [condition, duration, also].map(|&root| closure(lowering, slots, root));
+            quote!(Trigger::When { condition: #condition, duration: #duration, also: #also })
+        }
+        Trigger::Every(When::Step) => quote!(Trigger::EveryStep),
+        Trigger::Every(When::Time(time)) => {
+            let time = closure(lowering, slots, *time);
+            quote!(Trigger::Every(#time))
+        }
+    };
+    let actions = event.actions.iter().map(|action| match action {
+        Action::Stop => quote!(Action::Stop),
+        Action::Warn(text) => quote!(Action::Warn(#text)),
+        Action::Set(state, value) => {
+            let (state, value) = (Literal::usize_unsuffixed(state.0), closure(lowering, slots, *value));
+            quote!(Action::Set(#state, #value))
+        }
+    });
+    let actions: Vec<TokenStream> = actions.collect();
+    quote!(Event { name: #name, doc: #doc, trigger: #trigger, actions: &[#(#actions),*] })
+}
+
+fn every(lowering: &mut Lowering<'_>, slots: &Slots, when: &When) -> TokenStream {
+    match when {
+        When::Step => quote!(Every::Step),
+        When::Time(time) => {
+            let time = closure(lowering, slots, *time);
+            quote!(Every::Time(#time))
+        }
+    }
+}
+
+/// The entries of `Program::tables`.
+pub fn tables(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
+    let tables = forms.tables.clone();
+    let entries: Vec<TokenStream> = tables.iter().map(|table| one_table(&mut forms.lowering, slots, table)).collect();
+    quote!(&[#(#entries),*])
+}
+
+fn one_table(lowering: &mut Lowering<'_>, slots: &Slots, table: &Table) -> TokenStream {
+    let (file, every) = (&table.file, every(lowering, slots, &table.every));
+    let columns = table.columns.iter().map(|column| {
+        let (name, (value, unit)) = (&column.name, &column.unit);
+        let (unit_value, value) = (number(*value), closure(lowering, slots, column.value));
+        quote!(Column { name: #name, unit: #unit, unit_value: #unit_value, value: #value })
+    });
+    let columns: Vec<TokenStream> = columns.collect();
+    quote!(Table { file: #file, every: #every, columns: &[#(#columns),*] })
+}
+
+/// The entries of `Program::frames`.
+pub fn frames(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
+    let frames = forms.frames.clone();
+    let entries: Vec<TokenStream> = frames.iter().map(|frames| one_frames(&mut forms.lowering, slots, frames)).collect();
+    quote!(&[#(#entries),*])
+}
+
+fn one_frames(lowering: &mut Lowering<'_>, slots: &Slots, frames: &Frames) -> TokenStream {
+    let (regions, every) = (region_names(lowering.model, &frames.region), every(lowering, slots, &frames.every));
+    let columns = frames.columns.iter().map(|column| {
+        let (name, (value, unit)) = (&column.name, &column.unit);
+        let (unit_value, [components, offset]) = (number(*value), [column.components, column.offset].map(Literal::usize_unsuffixed));
+        quote!(FrameColumn { name: #name, unit: #unit, unit_value: #unit_value, components: #components, offset: #offset })
+    });
+    let columns: Vec<TokenStream> = columns.collect();
+    let function = point_function(lowering, slots, &frames.function);
+    quote!(Frames { regions: &[#(#regions),*], every: #every, columns: &[#(#columns),*], function: #function })
+}

@@ -32,3 +32,23 @@ fn the_shipped_model_is_right() {
     let model = model.expect("no diagnostics, so a model");
     assert_eq!(model.states.len(), 5);
 }
+
+#[test]
+fn every_mistake_is_explained() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/errors");
+    let entries = std::fs::read_dir(&folder).expect("the folder of mistakes");
+    let mut files: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
+    files.sort();
+    for path in files {
+        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        let text = std::fs::read_to_string(&path).expect("a text");
+        let (model, diagnostics, sources) = checked(&format!("{name}.ansatz"), &text, &folder);
+        let rendered = render(&diagnostics, &sources);
+        if name == "base" {
+            assert!(model.is_some() && diagnostics.is_empty(), "{rendered}");
+        } else {
+            assert!(model.is_none(), "`{name}` is accepted");
+            insta::assert_snapshot!(name, rendered);
+        }
+    }
+}

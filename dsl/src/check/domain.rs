@@ -204,7 +204,7 @@ impl Checker<'_> {
             return Ok(());
         }
         let known: Vec<&str> = labels.iter().flatten().map(String::as_str).collect();
-        let message = format!("the path has no label `{}`", label.text);
+        let message = format!("path `{}` has no label `{}`", self.geometry.paths[path.0].name, label.text);
         let mut diagnostic = Diagnostic::error(Code::UnknownMember, label.span, message)
             .help_did_you_mean(&label.text, known.iter().copied());
         if !known.is_empty() {

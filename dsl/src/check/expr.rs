@@ -23,6 +23,9 @@ impl Checker<'_> {
             ast::ExprKind::Record(members) => self.record(members, span, env),
             ast::ExprKind::Unary { op, operand, .. } => self.unary(*op, operand, span, env),
             ast::ExprKind::Binary { op, left, right, .. } => {
+                if let Some(slip) = self.unbracketed(e, env) {
+                    return Err(slip);
+                }
                 let (a, b) = (self.expr(left, env), self.expr(right, env));
                 self.arithmetic(operator(*op), a?, b?, span)
             }

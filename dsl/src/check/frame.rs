@@ -64,7 +64,8 @@ pub(super) fn coordinates(program: &Program, sink: &mut Sink) -> Coordinates {
         _ => None,
     });
     let Some((item, span)) = item else {
-        if let Some(geometry) = program.items.iter().find(|item| matches!(item.kind, ItemKind::Geometry(_))) {
+        let geometry = program.items.iter().find(|item| matches!(item.kind, ItemKind::Geometry(_)));
+        if let Some(geometry) = geometry.filter(|_| !sink.has_errors()) {
             let place = Span { end: geometry.span.start, ..geometry.span };
             sink.push(
                 Diagnostic::error(

@@ -1,5 +1,6 @@
 //! `match`: piecewise laws over a value and choices by region.
 
+use super::shape::settle;
 use super::{Checked, Checker, Env, Reported, constant};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::model::{Arm, Expr, ExprKind, Piece, RegionId, Smoothness};
@@ -44,7 +45,7 @@ impl Checker<'_> {
             match bound? {
                 Some((inclusive, mut bound)) => {
                     self.same(&mut scrutinee, &mut bound, arm.span, "compare")?;
-                    arms.push(Arm { inclusive, bound, value });
+                    arms.push(Arm { inclusive, bound: settle(bound), value });
                 }
                 None => otherwise = Some(value),
             }

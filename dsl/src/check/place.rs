@@ -119,6 +119,7 @@ pub(super) fn check(model: &Model, sink: &mut Sink) {
         return;
     }
     let mut placer = Placer { model, sink, reductions: Vec::new(), seen_reductions: BTreeSet::new() };
+    placer.definitions();
     placer.params();
     placer.geometry();
     placer.unknowns();
@@ -140,6 +141,31 @@ struct Placer<'m, 's> {
 }
 
 impl<'m> Placer<'m, '_> {
+    /// Integrals stand on their own domains, wherever they are used.
+    fn definitions(&mut self) {
+        let lets = self.model.lets.iter().map(|item| &item.value);
+        let functions = self.model.functions.iter();
+        let bodies =
+            functions.flat_map(|item| item.lets.iter().map(|(_, value)| value).chain([&item.result]));
+        for e in lets.chain(bodies) {
+            self.reductions_in(e);
+        }
+    }
+
+    fn reductions_in(&mut self, e: &'m Expr) {
+        self.reduction(e);
+        e.children().into_iter().for_each(|child| self.reductions_in(child));
+    }
+
+    /// Notes the integrand of a reduction for its own domain.
+    fn reduction(&mut self, e: &'m Expr) {
+        if let ExprKind::Reduce(_, inner, domain) = &e.kind
+            && self.seen_reductions.insert(e.span)
+        {
+            self.reductions.push((inner, domain));
+        }
+    }
+
     fn params(&mut self) {
         for (at, param) in self.model.params.iter().enumerate() {
             self.place(&param.default, Context::CONSTANT);
@@ -298,12 +324,7 @@ impl<'m> Placer<'m, '_> {
             self.exists(e, domain, via);
         }
         match &e.kind {
-            ExprKind::Reduce(_, inner, domain) => {
-                if self.seen_reductions.insert(e.span) {
-                    self.reductions.push((inner, domain));
-                }
-                return;
-            }
+            ExprKind::Reduce(..) => return self.reduction(e),
             ExprKind::ReduceRun(_, inner, times) => {
                 self.walk(inner, Context::GLOBAL, via, &mut BTreeSet::new());
                 for time in times.iter().flat_map(|(from, to)| [from, to]) {
@@ -355,7 +376,7 @@ impl<'m> Placer<'m, '_> {
                 "`event e when .. for 60 s;`",
             ),
             Ingredient::Run => {
-                (Code::NeedsRun, format!("{what} is known after the run"), "it stands in tests and sweeps")
+                (Code::NeedsRun, format!("{what} is known only after it"), "it stands in tests and sweeps")
             }
             _ if pointwise && global => (
                 Code::VariesInSpace,

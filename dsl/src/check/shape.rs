@@ -25,9 +25,35 @@ fn product_shape(a: Shape, b: Shape) -> Option<Shape> {
     }
 }
 
+/// Whether `e` still fits several types: a literal 0, or a vector of them.
+fn open(e: &Expr) -> bool {
+    let zero =
+        |item: &Expr| matches!(item.kind, ExprKind::Number(value) if value == 0.0) && item.ty == Type::NUMBER;
+    match &e.kind {
+        ExprKind::Tuple(items) => items.iter().all(zero),
+        ExprKind::Triple(items) => items.iter().all(zero),
+        _ => e.ty == Type::Zero,
+    }
+}
+
+/// Gives a vector of literal zeros the dimension of its neighbour.
+fn coerce_zero_vector(e: &mut Expr, ty: &Type) {
+    let Type::Value(Shape::Vector, dimension) = ty else { return };
+    let component = Type::Value(Shape::Scalar, *dimension);
+    match &mut e.kind {
+        ExprKind::Tuple(items) => items.iter_mut().for_each(|item| item.ty = component.clone()),
+        ExprKind::Triple(items) => items.iter_mut().for_each(|item| item.ty = component.clone()),
+        _ => return,
+    }
+    e.ty = ty.clone();
+}
+
 /// Gives every literal 0 in `e` the type that its neighbour has; anything else stays.
 pub(super) fn coerce(e: &mut Expr, ty: &Type) {
     if e.ty != Type::Zero {
+        if open(e) {
+            coerce_zero_vector(e, ty);
+        }
         return;
     }
     e.ty = ty.clone();
@@ -54,6 +80,12 @@ pub(super) fn coerce(e: &mut Expr, ty: &Type) {
 
 /// A literal 0 that met no neighbour is a plain number.
 pub(super) fn settle(mut e: Expr) -> Expr {
+    if let (ExprKind::Record(items), Type::Record(members)) = (&mut e.kind, &mut e.ty) {
+        for (item, (_, ty)) in items.iter_mut().zip(members) {
+            coerce(item, &Type::NUMBER);
+            *ty = item.ty.clone();
+        }
+    }
     coerce(&mut e, &Type::NUMBER);
     e
 }
@@ -81,7 +113,8 @@ impl Checker<'_> {
 
     /// Makes all expressions one type, that of the first that is not a literal 0.
     pub(super) fn all_same(&mut self, items: &mut [Expr], span: Span, what: &str) -> Checked<Type> {
-        let ty = items.iter().map(|item| item.ty.clone()).find(|ty| *ty != Type::Zero).unwrap_or(Type::Zero);
+        let decided = items.iter().find(|item| !open(item)).or(items.first());
+        let ty = decided.map_or(Type::Zero, |item| item.ty.clone());
         items.iter_mut().for_each(|item| coerce(item, &ty));
         let Some(first) = items.iter().position(|item| item.ty == ty) else { return Ok(ty) };
         match items.iter().position(|item| item.ty != ty) {
@@ -107,7 +140,9 @@ impl Checker<'_> {
 
     /// Help where `a` is a bare number literal beside a quantity.
     fn missing_unit(&self, a: &Expr, b: &Expr) -> Option<String> {
-        let (ExprKind::Number(_), Type::Value(_, dimension)) = (&a.kind, &b.ty) else { return None };
+        let (ExprKind::Number(_), Type::Value(Shape::Scalar, dimension)) = (&a.kind, &b.ty) else {
+            return None;
+        };
         if a.ty != Type::NUMBER || dimension.is_number() {
             return None;
         }

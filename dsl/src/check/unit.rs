@@ -1,10 +1,10 @@
 //! Units: literals into the model's coherent units, and dimensions in words.
 
-use super::{Checked, Checker, Reported};
+use super::{Checked, Checker, Env, Reported};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::model::{Expr, ExprKind, Shape, Type};
 use crate::source::Span;
-use crate::syntax::ast;
+use crate::syntax::ast::{self, BinaryOp};
 use ansatz_units::{Dimension, Unit, UnitExpr, UnitSystem, convert};
 
 impl Checker<'_> {
@@ -58,9 +58,56 @@ impl Checker<'_> {
         }
     }
 
+    /// Reports a unit of several names without brackets: `1000 kg/m^3` with no `m` declared.
+    pub(super) fn unbracketed(&mut self, e: &ast::Expr, env: &Env) -> Option<Reported> {
+        let (number, written, first) = unbracketed_parts(e)?;
+        let known = env.locals.iter().any(|(name, _)| *name == first) || self.symbol(&first, env).is_some();
+        if known {
+            return None;
+        }
+        let (text, whole) = (&number.text, self.sources.slice(e.span));
+        let verb = if whole.contains('/') { "divided by" } else { "times" };
+        let message = format!(
+            "`{whole}` means {text} {written} {verb} something called `{first}`, and no `{first}` is declared"
+        );
+        let unit: String = whole.strip_prefix(text.as_str())?.split_whitespace().collect();
+        Some(
+            self.report(
+                Diagnostic::error(Code::UnitNeedsBrackets, e.span, message)
+                    .help(format!("write `{text} [{unit}]`")),
+            ),
+        )
+    }
+
     /// A type in words: `Pressure (kPa)`, `Vector[Length] (um)`.
     pub(super) fn words(&self, ty: &Type) -> String {
         words(&self.units, ty)
+    }
+}
+
+/// The number, its unit and the first further name of a product or quotient that reads like one unit.
+fn unbracketed_parts(e: &ast::Expr) -> Option<(&ast::Number, &str, String)> {
+    let ast::ExprKind::Binary { op: BinaryOp::Mul | BinaryOp::Div, left, right, .. } = &e.kind else {
+        return None;
+    };
+    let name = unit_name(right)?;
+    match &left.kind {
+        ast::ExprKind::Number(number) => {
+            let unit = number.unit.as_ref().filter(|unit| !unit.text.starts_with('['))?;
+            Some((number, &unit.text, name))
+        }
+        _ => unbracketed_parts(left),
+    }
+}
+
+/// The unit that `e` would be: a name from the list, perhaps with an exponent.
+fn unit_name(e: &ast::Expr) -> Option<String> {
+    match &e.kind {
+        ast::ExprKind::Name(name) => Unit::find(name).map(|_| name.clone()),
+        ast::ExprKind::Binary { op: BinaryOp::Pow, left, right, .. } => {
+            matches!(right.kind, ast::ExprKind::Number(_)).then(|| unit_name(left)).flatten()
+        }
+        _ => None,
     }
 }
 

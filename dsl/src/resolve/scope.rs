@@ -118,10 +118,7 @@ impl Scope {
         sink.push(if first.source == name.span.source {
             diagnostic
         } else {
-            diagnostic.help(format!(
-                "to change what the base declares, write `replace ..` before it: `replace let {} = ..;`",
-                name.text
-            ))
+            diagnostic.help("to change what the base declares, write `replace` before the item")
         });
     }
 

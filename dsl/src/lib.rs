@@ -13,3 +13,5 @@ pub mod form;
 pub mod kernel;
 pub mod check;
 pub mod resolve;
+pub mod emit;
+pub mod compile;

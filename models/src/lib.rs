@@ -1,1 +1,1 @@
-//! ansatz-models
+//! The models that ship with Ansatz.

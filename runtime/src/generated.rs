@@ -7,9 +7,20 @@
 
 pub use ansatz_geometry::{Geometry, GeometryError, LoopPart, PathBuilder, Region, Turn};
 
+pub use crate::error::Error;
 pub use crate::lane::{BATCH, Lane, Simd};
 pub use crate::mesh::{MeshSizing, Place, SizeRule};
+pub use crate::simulation::Simulation;
+pub use crate::simulator::main;
 pub use crate::vectorize;
+
+/// A simulation of a compiled model; `parameters` are all its parameters' values in its units.
+///
+/// # Errors
+/// See [`Simulation::new`].
+pub fn simulation(program: &'static Program, parameters: Vec<f64>) -> Result<Simulation, Error> {
+    Simulation::new(program, &parameters)
+}
 
 /// Everything the compiler says about a model.
 pub struct Program {

@@ -14,8 +14,12 @@ pub mod output;
 pub mod record;
 pub mod settings;
 pub mod simulation;
+pub mod simulator;
 pub mod solve;
 pub mod system;
 pub mod time;
 
+#[cfg(feature = "macros")]
+pub use ansatz_macros::{include_model, model};
 pub use error::Error;
+pub use simulation::Simulation;

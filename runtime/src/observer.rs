@@ -27,14 +27,14 @@ pub struct Fired {
     pub time: f64,
 }
 
-/// Node values of a field frame on the cells of its regions, shared with whoever writes it.
+/// Node values of a field frame: its nodes are the mesh nodes of its regions in ascending order.
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// Index into the program's frames.
     pub frame: usize,
     /// Time.
     pub time: f64,
-    /// Displacement of the mesh nodes if the model has a vector field of lengths on these regions (drawn deformed).
+    /// Values of each column, node by node, component by component \[internal units\].
     pub columns: Vec<Vec<f64>>,
 }
 
@@ -59,5 +59,31 @@ pub trait Observer {
     /// An event fired.
     fn fired(&mut self, _event: &Fired) -> Result<(), Error> {
         Ok(())
+    }
+}
+
+/// Two observers as one; the first hears everything first.
+pub struct Both<'a>(pub &'a mut dyn Observer, pub &'a mut dyn Observer);
+
+impl Observer for Both<'_> {
+    fn begin(&mut self, mesh: &Mesh) -> Result<(), Error> {
+        self.0.begin(mesh)?;
+        self.1.begin(mesh)
+    }
+    fn step(&mut self, step: &Step<'_>) -> Result<(), Error> {
+        self.0.step(step)?;
+        self.1.step(step)
+    }
+    fn row(&mut self, table: usize, values: &[f64]) -> Result<(), Error> {
+        self.0.row(table, values)?;
+        self.1.row(table, values)
+    }
+    fn frame(&mut self, frame: Frame) -> Result<(), Error> {
+        self.0.frame(frame.clone())?;
+        self.1.frame(frame)
+    }
+    fn fired(&mut self, fired: &Fired) -> Result<(), Error> {
+        self.0.fired(fired)?;
+        self.1.fired(fired)
     }
 }

@@ -73,6 +73,20 @@ pub fn display(value: f64) -> String {
     }
 }
 
+/// A time such as `50 s`, in the model's unit.
+///
+/// # Errors
+/// [`Error::Parameter`] when it is no time.
+pub fn time(program: &Program, text: &str) -> Result<f64, Error> {
+    let wrong = |why: String| Error::Parameter(format!("`{text}` is no time: {why}; write it with a unit, such as \"50 s\""));
+    let (si, dimension) = parse_quantity(text).map_err(|e| wrong(e.to_string()))?;
+    if dimension == Dimension::TIME {
+        Ok(si / scale(program, dimension))
+    } else {
+        Err(wrong(format!("it is {}", dimension.describe())))
+    }
+}
+
 fn find(program: &Program, name: &str) -> Result<usize, Error> {
     if let Some(index) = program.parameters.iter().position(|p| p.name == name) {
         return Ok(index);

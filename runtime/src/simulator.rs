@@ -1,11 +1,12 @@
 //! The command line of a compiled model: the same for `ansatz run` and for an executable made by `ansatz build`.
 
 use crate::error::Error;
-use crate::generated::Program;
-use crate::observer::{Both, Observer};
+use crate::generated::{Program, Record};
+use crate::observer::Both;
 use crate::output::progress::Progress;
 use crate::output::results::Results;
-use crate::settings::{display, resolve, split};
+use crate::output::summary::Run;
+use crate::settings::{display, resolve, split, time};
 use crate::simulation::Simulation;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use std::fmt::Write as _;
@@ -31,7 +32,7 @@ fn command(program: &'static Program) -> Command {
     Command::new(program.name)
         .about(if program.doc.is_empty() { "A simulator made by Ansatz" } else { program.doc })
         .arg(Arg::new("set").long("set").value_name("NAME=VALUE").action(ArgAction::Append).help("Sets a parameter, such as --set r=\"1.2 um\""))
-        .arg(Arg::new("out").long("out").value_name("DIR").default_value(default_folder(program)).help("Folder for the results"))
+        .arg(Arg::new("out").long("out").value_name("DIR").help("Folder for the results; results/MODEL if not given"))
         .arg(Arg::new("until").long("until").value_name("TIME").help("Ends the run at this time, such as \"50 s\""))
         .arg(Arg::new("no-frames").long("no-frames").action(ArgAction::SetTrue).help("Writes tables only, no field frames and pictures"))
         .arg(Arg::new("quiet").long("quiet").short('q').action(ArgAction::SetTrue).help("Shows no progress"))
@@ -39,8 +40,8 @@ fn command(program: &'static Program) -> Command {
         .after_help(parameter_list(program))
 }
 
-fn default_folder(program: &Program) -> String {
-    format!("results/{}", program.name)
+fn default_folder(program: &Program) -> PathBuf {
+    ["results", program.name].iter().collect()
 }
 
 /// Every parameter with default, range and documentation.
@@ -64,23 +65,62 @@ fn parameter_list(program: &Program) -> String {
 }
 
 fn run(program: &'static Program, matches: &ArgMatches) -> Result<(), Error> {
-    let settings = matches.get_many::<String>("set").into_iter().flatten().map(|s| split(s)).collect::<Result<Vec<_>, _>>()?;
+    let settings = matches.get_many::<String>("set").into_iter().flatten();
+    let settings = settings.map(|s| split(s)).collect::<Result<Vec<_>, _>>()?;
     let values = resolve(program, &settings)?;
-    let folder = PathBuf::from(matches.get_one::<String>("out").cloned().unwrap_or_else(|| default_folder(program)));
-    let until = matches.get_one::<String>("until").map(|t| crate::settings::time(program, t)).transpose()?;
-    let mut results = Results::create(&folder, program)?;
-    results.keep_frames(!matches.get_flag("no-frames"));
+    let until = matches.get_one::<String>("until").map(|t| time(program, t)).transpose()?;
+    let folder = matches.get_one::<String>("out").map_or_else(|| default_folder(program), PathBuf::from);
     let started = Instant::now();
     let mut simulation = Simulation::new(program, &values)?;
-    let span = simulation.span(until);
+    let mut results = Results::create(&folder, program)?;
+    results.keep_frames(!matches.get_flag("no-frames"));
     let outcome = if matches.get_flag("quiet") {
         simulation.run(&mut results, until)
     } else {
-        let mut progress = Progress::new(program, span);
+        let mut progress = Progress::new(program, simulation.span(until));
         simulation.run(&mut Both(&mut results, &mut progress), until)
     };
-    let finished = finish(&mut results, &mut simulation, &values, started.elapsed().as_secs_f64());
+    let mut told = describe(program, &simulation, outcome.as_ref().err());
+    told.wall_seconds = started.elapsed().as_secs_f64();
+    results.finish(&values, &simulation.system().mesh, &told)?;
     outcome?;
-    finished?;
-    if matches.get_flag("test") { check_expectations(program, &simulation) } else { Ok(()) }
+    eprintln!("outcome: {}; results in {}", told.outcome, folder.display());
+    if matches.get_flag("test") { expectations(program, &simulation) } else { Ok(()) }
+}
+
+/// The summary of a run, finished or not.
+fn describe(program: &Program, simulation: &Simulation, error: Option<&Error>) -> Run {
+    let (record, system) = (simulation.record(), simulation.system());
+    let statistics = record.statistics();
+    let mut events: Vec<(String, f64)> =
+        program.events.iter().filter_map(|e| Some((e.name.into(), record.event_time(e.name)?))).collect();
+    events.sort_by(|a, b| a.1.total_cmp(&b.1));
+    Run {
+        outcome: record.outcome().into(),
+        time: record.times().last().copied().unwrap_or(f64::NAN),
+        steps: [statistics.accepted, statistics.rejected],
+        iterations: statistics.iterations,
+        unknowns: system.unknowns.length,
+        equations: system.equation_count(),
+        matrix_entries: system.matrix_entries(),
+        events,
+        wall_seconds: 0.0,
+        error: error.map(ToString::to_string),
+    }
+}
+
+/// Prints every expectation of the model's tests that read the run.
+fn expectations(program: &Program, simulation: &Simulation) -> Result<(), Error> {
+    let mut failed = 0;
+    for test in program.tests {
+        for found in (test.evaluate)(simulation.record()) {
+            let verdict = if found.holds { "passed" } else { "FAILED" };
+            let numbers = found.numbers.map_or(String::new(), |[value, expected, tolerance]| {
+                format!("  found {}, expected {} within {}", display(value), display(expected), display(tolerance))
+            });
+            eprintln!("{verdict}  {}: {}{numbers}  ({})", test.title, found.text, found.place);
+            failed += usize::from(!found.holds);
+        }
+    }
+    if failed == 0 { Ok(()) } else { Err(Error::Model(format!("{failed} expectations of the model do not hold"))) }
 }

@@ -5,12 +5,12 @@ mod canvas;
 mod frames;
 mod plot;
 mod snapshot;
-mod summary;
 mod table;
 mod vtu;
 
 pub mod progress;
 pub mod results;
+pub mod summary;
 
 use crate::error::Error;
 use std::path::Path;

@@ -18,6 +18,7 @@ pub struct Results {
     /// Rows of each table so far, for the plots.
     rows: Vec<Vec<Vec<f64>>>,
     frames: Option<FrameWriter>,
+    wants_frames: bool,
 }
 
 impl Results {
@@ -31,7 +32,12 @@ impl Results {
         let tables =
             program.tables.iter().map(|t| TableWriter::create(folder, t)).collect::<Result<_, _>>()?;
         let rows = vec![Vec::new(); program.tables.len()];
-        Ok(Self { folder: folder.to_path_buf(), program, tables, rows, frames: None })
+        Ok(Self { folder: folder.to_path_buf(), program, tables, rows, frames: None, wants_frames: true })
+    }
+
+    /// Whether field frames and pictures are written.
+    pub fn keep_frames(&mut self, wanted: bool) {
+        self.wants_frames = wanted;
     }
 
     /// The folder.
@@ -55,7 +61,9 @@ impl Results {
 
 impl Observer for Results {
     fn begin(&mut self, mesh: &Mesh) -> Result<(), Error> {
-        self.frames = Some(FrameWriter::start(self.folder.clone(), self.program, mesh)?);
+        if self.wants_frames {
+            self.frames = Some(FrameWriter::start(self.folder.clone(), self.program, mesh)?);
+        }
         Ok(())
     }
 

@@ -11,6 +11,9 @@ use crate::time::integrator::Point;
 use crate::time::run::{Plan, run};
 use crate::time::{Group, ImplicitSystem, Stage};
 
+#[cfg(test)]
+mod tests;
+
 /// A simulation of one model with one set of parameters.
 pub struct Simulation {
     discretised: Discretised,

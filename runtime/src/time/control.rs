@@ -5,7 +5,10 @@
 //! magnitude that each kind of unknowns has shown so far.
 
 use super::Group;
+use super::integrator::Tableau;
 
+/// First step after a start, as a part of the largest.
+const START: f64 = 0.02;
 /// Part of the step that the error would allow.
 const SAFETY: f64 = 0.9;
 /// A step grows by at most this factor.
@@ -62,10 +65,10 @@ impl Magnitudes {
     }
 }
 
-/// Part of the difference between solution and extrapolation that is the error of the method: its `error_constant`, the degree p and the
-/// remainder factor P of the extrapolation, the step size.
-pub fn milne_factor(error_constant: f64, (degree, remainder): (usize, f64), size: f64) -> f64 {
-    let missed = error_constant * size.powi(degree as i32 + 1);
+/// Part of the difference between solution and extrapolation that is the error of the method; `remainder` is the factor P of an extrapolation of
+/// the method's order.
+pub fn milne_factor(method: &Tableau, remainder: f64, size: f64) -> f64 {
+    let missed = method.error_constant * size.powi(method.order as i32 + 1);
     missed / (remainder + missed)
 }
 
@@ -97,10 +100,10 @@ impl Control {
         Self { smallest, largest, tolerance, size: largest, previous: 1.0, careful: false }
     }
 
-    /// Size for the first step after a start or a jump: a twentieth of the largest, and no unknown should change by more than sqrt(tolerance) of
+    /// Size for the first step after a start or a jump: a fiftieth of the largest, and no unknown should change by more than sqrt(tolerance) of
     /// its magnitude. `time_scale` is that of [`Magnitudes::time_scale`].
     pub fn restart(&mut self, time_scale: f64) {
-        let size = (0.05 * self.largest).min(self.tolerance.sqrt() * time_scale);
+        let size = (START * self.largest).min(self.tolerance.sqrt() * time_scale);
         self.size = size.clamp(self.smallest, self.largest);
         (self.previous, self.careful) = (1.0, false);
     }
@@ -169,12 +172,12 @@ mod tests {
     fn steps_shrink_on_error_grow_slowly_and_stay_in_range() {
         let mut control = Control::new(1e-3, 1.0, 1e-4);
         control.restart(10.0);
-        assert_eq!(control.next(100.0), 0.05);
-        assert_eq!(control.judge(0.05, 8e-4, 3), Verdict::Retry(0.9 * 0.05 / 2.0));
-        assert_eq!(control.judge(0.0225, 1e-9, 3), Verdict::Accept);
-        assert_eq!(control.next(100.0), 0.0225, "no growth right after a rejection");
-        assert_eq!(control.judge(0.0225, 0.0, 3), Verdict::Accept);
-        assert!(control.next(100.0) <= 2.0 * 0.0225);
+        assert_eq!(control.next(100.0), 0.02);
+        assert_eq!(control.judge(0.02, 8e-4, 3), Verdict::Retry(0.9 * 0.02 / 2.0));
+        assert_eq!(control.judge(0.009, 1e-9, 3), Verdict::Accept);
+        assert_eq!(control.next(100.0), 0.009, "no growth right after a rejection");
+        assert_eq!(control.judge(0.009, 0.0, 3), Verdict::Accept);
+        assert_eq!(control.next(100.0), 0.018, "at most twice as large");
         for _ in 0..20 {
             let size = control.next(100.0);
             assert_eq!(control.judge(size, 0.0, 3), Verdict::Accept);

@@ -85,7 +85,7 @@ impl March {
         let mut size = self.control.next(limit - self.last().time);
         loop {
             size = match self.attempt(system, size, limit) {
-                Ok((proposal, error, order)) => match self.control.judge(size, error, order) {
+                Ok((proposal, error)) => match self.control.judge(size, error, self.method.order + 1) {
                     Verdict::Accept => return Ok(proposal),
                     Verdict::Retry(smaller) => smaller,
                 },
@@ -103,16 +103,17 @@ impl March {
         system: &mut dyn ImplicitSystem,
         time: f64,
     ) -> Result<Proposal, SolveError> {
-        self.attempt(system, time - self.last().time, time).map(|(proposal, ..)| proposal)
+        self.attempt(system, time - self.last().time, time).map(|(proposal, _)| proposal)
     }
 
-    /// A step with its relative error and the order of that estimate.
+    /// A step with its relative error. The first step after a start has too few points before it for an estimate:
+    /// its size alone must make it accurate enough.
     fn attempt(
         &mut self,
         system: &mut dyn ImplicitSystem,
         size: f64,
         limit: f64,
-    ) -> Result<(Proposal, f64, usize), SolveError> {
+    ) -> Result<(Proposal, f64), SolveError> {
         let mut iterations = 0;
         let predict = |time: f64| self.history.extrapolate(time, self.method.order);
         let end = advance(self.method, system, self.last(), size, predict, &mut iterations);
@@ -122,11 +123,16 @@ impl March {
         if (end.time - limit).abs() < 1e-9 * size {
             end.time = limit;
         }
-        let remainder = self.history.remainder(end.time, self.method.order);
-        let factor = milne_factor(self.method.error_constant, remainder, size);
-        let predicted = self.history.extrapolate(end.time, self.method.order);
-        let error = factor * self.magnitudes.relative_difference(&end.values, &predicted);
-        Ok((Proposal { end, size, iterations }, error, remainder.0 + 1))
+        let order = self.method.order;
+        let (degree, remainder) = self.history.remainder(end.time, order);
+        let error = if degree < order {
+            0.0
+        } else {
+            let predicted = self.history.extrapolate(end.time, order);
+            let difference = self.magnitudes.relative_difference(&end.values, &predicted);
+            milne_factor(self.method, remainder, size) * difference
+        };
+        Ok((Proposal { end, size, iterations }, error))
     }
 
     /// Takes a proposed step.

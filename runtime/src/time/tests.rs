@@ -239,6 +239,32 @@ fn robertson_reaches_its_slow_phase_in_few_steps() {
     assert!(notes.sizes.len() < 150, "{}", notes.sizes.len());
 }
 
+/// Tension of a stress fibre on stretching bonds [nN] from their stretch [um].
+fn tension(stretch: f64) -> f64 {
+    let (stiffness, thermal, most, area) = (0.15, 1.381e-8 * 310.0, 5000.0, 4.0);
+    let energy = 0.5 * stiffness * stretch * stretch - 5.0 * thermal;
+    most / (1.0 + (-energy / thermal).exp()) * stiffness * stretch * area
+}
+
+#[test]
+fn a_stress_fibre_against_drag_follows_the_reference_mostly_in_the_largest_steps() {
+    // Activation eta and bond stretch d: S1, and S2 with S11 for v_A = tau/kappa, v_C = 0, in nN, um, s.
+    let mut system = Small::new(&[true, true], |t, y, rates| {
+        let part = tension(y[1]) / 100.0;
+        let activation = (1.0 - y[0]) * 0.1 * (-t / 100.0).exp() - 0.01 * (y[0] - part);
+        vec![rates[0] - activation, part + 0.1 * (part - y[0]) + rates[1]]
+    });
+    let (record, notes) = run_small(&mut system, plan(settings(200.0, 1e-4, 1.0), &[]), &[0.0, 0.0]);
+    let reference =
+        [(5.0, 3.405), (10.0, 5.356), (20.0, 7.113), (50.0, 7.923), (100.0, 7.529), (200.0, 6.149)];
+    for (time, expected) in reference {
+        let found = tension(record.at(time)[2]);
+        assert!((found / expected - 1.0).abs() < 1e-3, "tau({time}) = {found}, not {expected}");
+    }
+    let largest = notes.sizes.iter().filter(|size| **size == 1.0).count();
+    assert!(notes.sizes.len() < 280 && largest > 180, "{} {largest}", notes.sizes.len());
+}
+
 #[test]
 fn a_slow_problem_goes_at_the_largest_step_after_a_short_start() {
     let mut system = Small::new(&[true], |_, y, rates| vec![rates[0] + (y[0] - 1.0) / 50.0]);

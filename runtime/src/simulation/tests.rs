@@ -1,0 +1,254 @@
+//! A model small enough to solve by hand, written as a compiler would emit it:
+//! u' + u = 0 on the unit square with u = 1 at the start, so u = exp(-t); s' + s = Z with Z = integral of u and s = 0, so s = t exp(-t).
+
+use super::Simulation;
+use crate::error::Error;
+use crate::generated::{
+    Action, Batch, Column, Domain, Event, Every, Field, FrameColumn, Frames, Functional, FunctionalKind,
+    Geometry, Integral, Integrator, Layout, MeshSizing, Observable, ObservableKind, PointFunction,
+    PointInput, Program, Record, Solve, Space, Start, State, StateSystem, Table, Trigger, Use,
+};
+use crate::mesh::structured_rectangle;
+use crate::observer::{Frame, Observer};
+
+type Rows = [[f64; 8]];
+
+const BODY: Domain = Domain::Cells(&["body"]);
+
+fn area(batch: &Batch<'_>, lane: usize) -> f64 {
+    let x = |i: usize| batch.nodes[i][lane];
+    0.5 * ((x(2) - x(0)) * (x(5) - x(1)) - (x(4) - x(0)) * (x(3) - x(1)))
+}
+
+/// Entry of the mass matrix of a linear triangle over its area.
+fn mass(i: usize, j: usize) -> f64 {
+    if i == j { 1.0 / 6.0 } else { 1.0 / 12.0 }
+}
+
+/// Mass matrix times values or rates.
+fn weighted(batch: &Batch<'_>, rows: &Rows, out: &mut Rows) {
+    for (i, row) in out.iter_mut().enumerate().take(3) {
+        let sum = |lane: usize| (0..3).map(|j| mass(i, j) * rows[j][lane]).sum::<f64>();
+        *row = std::array::from_fn(|lane| area(batch, lane) * sum(lane));
+    }
+}
+
+/// Lower triangle of the mass matrix times a factor.
+fn mass_tangent(batch: &Batch<'_>, factor: f64, out: &mut Rows) {
+    let entries = (0..3).flat_map(|i| (0..=i).map(move |j| (i, j)));
+    for ((i, j), row) in entries.zip(out) {
+        *row = std::array::from_fn(|lane| factor * area(batch, lane) * mass(i, j));
+    }
+}
+
+fn decay(batch: &Batch<'_>, _: &[f64], out: &mut Rows) {
+    weighted(batch, batch.values, out);
+}
+
+fn decay_tangent(batch: &Batch<'_>, g: &[f64], out: &mut Rows) {
+    decay(batch, g, out);
+    mass_tangent(batch, 1.0, &mut out[3..]);
+}
+
+fn change(batch: &Batch<'_>, _: &[f64], out: &mut Rows) {
+    weighted(batch, batch.rates, out);
+}
+
+fn change_tangent(batch: &Batch<'_>, g: &[f64], out: &mut Rows) {
+    change(batch, g, out);
+    mass_tangent(batch, batch.alpha, &mut out[3..]);
+}
+
+fn total(batch: &Batch<'_>, _: &[f64], out: &mut Rows) {
+    let mean = |lane: usize| (0..3).map(|j| batch.values[j][lane]).sum::<f64>() / 3.0;
+    out[0] = std::array::from_fn(|lane| area(batch, lane) * mean(lane));
+}
+
+fn total_variation(batch: &Batch<'_>, _: &[f64], out: &mut Rows) {
+    out[..3].fill(std::array::from_fn(|lane| area(batch, lane) / 3.0));
+}
+
+const INTEGRAL_OF_U: Integral = Integral {
+    name: "integral of u",
+    place: "model:1",
+    block: 0,
+    domain: BODY,
+    uses: &[Use { field: 0 }],
+    symmetric: true,
+    value: Some(total),
+    residual: total_variation,
+    tangent: None,
+    global_tangent: None,
+};
+
+/// Globals: limit, time, s, s', Z, Z', integral of u.
+const LAYOUT: Layout = Layout {
+    parameters: [0, 1],
+    measures: [1, 1],
+    constants: [1, 1],
+    time: 1,
+    states: [2, 3],
+    state_rates: [3, 4],
+    functionals: [4, 5],
+    functional_rates: [5, 6],
+    observables: [6, 7],
+    length: 7,
+};
+
+const fn program(solve: fn(&[f64]) -> Solve) -> Program {
+    Program {
+        name: "decay",
+        doc: "",
+        source_hash: "",
+        base_scales: [1.0; 6],
+        base_units: ["m", "s", "kg", "K", "mol", "A"],
+        axisymmetric: false,
+        layout: LAYOUT,
+        parameters: &[],
+        geometry: |_| Ok(Geometry::default()),
+        sizing: |_| MeshSizing::default(),
+        measures: &[],
+        weight: |_| 1.0,
+        constants: |_| {},
+        fields: &[Field {
+            name: "u",
+            components: 1,
+            component_names: &[""],
+            space: Space::P1,
+            regions: &["body"],
+            unit: "1",
+            start: |_, _, out| out[0] = 1.0,
+        }],
+        states: &[State {
+            name: "s",
+            unit: "1",
+            start: Start::Fixed,
+            value: |_| 0.0,
+            bounds: |_| (f64::NEG_INFINITY, f64::INFINITY),
+        }],
+        functionals: &[Functional { name: "Z", unit: "1", kind: FunctionalKind::Integral(&[INTEGRAL_OF_U]) }],
+        blocks: &["decay"],
+        holds: &[],
+        integrals: &[
+            Integral { value: None, residual: decay, tangent: Some(decay_tangent), ..INTEGRAL_OF_U },
+            Integral { value: None, residual: change, tangent: Some(change_tangent), ..INTEGRAL_OF_U },
+        ],
+        pairs: &[],
+        pair_integrals: &[],
+        couplings: None,
+        state_system: Some(StateSystem {
+            switches: 0,
+            places: &["model:2"],
+            differential: &[true],
+            algebraic_equations: &[false],
+            switch: |_, _| {},
+            residual: |g, _, out| out[0] = g[3] + g[2] - g[4],
+            jacobian: |_, _, alpha, out| out[0] = 1.0 + alpha,
+            sensitivity: |_, _, _, out| out[0] = -1.0,
+        }),
+        observables: &[Observable {
+            name: "integral of u",
+            unit: "1",
+            kind: ObservableKind::Integral(&[INTEGRAL_OF_U]),
+        }],
+        events: &[Event {
+            name: "halved",
+            doc: "half is gone",
+            trigger: Trigger::When { condition: |g| g[0] - g[6], duration: |_| 0.0, also: |_| 1.0 },
+            actions: &[Action::Stop],
+        }],
+        solve,
+        tables: &[Table {
+            file: "history.csv",
+            every: Every::Time(|_| 0.1),
+            columns: &[
+                Column { name: "t", unit: "s", unit_value: 1.0, value: |g| g[1] },
+                Column { name: "s", unit: "%", unit_value: 0.01, value: |g| g[2] },
+            ],
+        }],
+        frames: &[Frames {
+            regions: &["body"],
+            every: Every::Time(|_| 0.25),
+            columns: &[FrameColumn { name: "u", unit: "1", unit_value: 1.0, components: 1, offset: 0 }],
+            function: PointFunction {
+                inputs: &[PointInput { field: 0, component: 0, derivative: None, rate: false }],
+                outputs: 1,
+                regions: &["body"],
+                evaluate: |_, _, inputs, _, out| out[0] = inputs[0],
+            },
+        }],
+        tests: &[],
+    }
+}
+
+const SOLVE: Solve = Solve {
+    time: Some((0.0, 2.0)),
+    integrator: Integrator::Sdirk2,
+    max_step: 0.2,
+    min_step: 1e-6,
+    step_tolerance: 1e-5,
+    newton_tolerance: 1e-10,
+    newton_iterations: 10,
+};
+
+static DECAY: Program = program(|_| SOLVE);
+static REST: Program = program(|_| Solve { time: None, ..SOLVE });
+
+#[derive(Default)]
+struct Notes {
+    cells: usize,
+    rows: Vec<Vec<f64>>,
+    frames: Vec<Frame>,
+}
+
+impl Observer for Notes {
+    fn begin(&mut self, mesh: &crate::mesh::Mesh) -> Result<(), Error> {
+        self.cells = mesh.cells.len();
+        Ok(())
+    }
+    fn row(&mut self, _: usize, values: &[f64]) -> Result<(), Error> {
+        self.rows.push(values.to_vec());
+        Ok(())
+    }
+    fn frame(&mut self, frame: Frame) -> Result<(), Error> {
+        self.frames.push(frame);
+        Ok(())
+    }
+}
+
+fn simulation(program: &'static Program, limit: f64) -> Simulation {
+    Simulation::on_mesh(program, &[limit], structured_rectangle(3, 3, |x, y| [x, y])).unwrap()
+}
+
+#[test]
+fn fields_states_and_outputs_follow_the_known_solution() {
+    let (mut decay, mut notes) = (simulation(&DECAY, 0.0), Notes::default());
+    assert_eq!(decay.run(&mut notes, None).unwrap(), "finished");
+    assert_eq!((notes.cells, notes.rows.len(), notes.frames.len()), (18, 21, 9));
+    for row in &notes.rows {
+        assert!((row[1] - 100.0 * row[0] * (-row[0]).exp()).abs() < 0.02, "{row:?}");
+    }
+    for frame in &notes.frames {
+        let exact = (-frame.time).exp();
+        assert!(frame.columns[0].iter().all(|u| (u - exact).abs() < 2e-4), "t = {}", frame.time);
+    }
+    assert!(decay.record().steps().iter().all(|g| (g[6] - g[4]).abs() < 1e-12), "observable and functional");
+}
+
+#[test]
+fn a_run_stops_at_its_event_or_at_the_time_asked_for() {
+    let mut decay = simulation(&DECAY, 0.5);
+    assert_eq!(decay.run(&mut Notes::default(), None).unwrap(), "halved");
+    let time = decay.record().event_time("halved").unwrap();
+    assert!((time - std::f64::consts::LN_2).abs() < 2e-4, "{time}");
+    assert_eq!(decay.run(&mut Notes::default(), Some(0.3)).unwrap(), "finished");
+    assert_eq!(decay.record().times().last(), Some(&0.3));
+}
+
+#[test]
+fn a_model_without_time_is_solved_once() {
+    let (mut rest, mut notes) = (simulation(&REST, 0.0), Notes::default());
+    assert_eq!(rest.run(&mut notes, None).unwrap(), "finished");
+    assert!(rest.record().steps()[0][6].abs() < 1e-12);
+    assert_eq!((notes.rows.len(), notes.frames.len()), (1, 1));
+}

@@ -144,7 +144,7 @@ fn a_variant_adds_replaces_and_drops() {
     );
     let model = model.unwrap_or_else(|| panic!("{words}"));
     assert_eq!(model.name, "variant");
-    assert_eq!(model.params[0].bounds.is_some(), false, "the new parameter has no bounds");
+    assert!(model.params[0].bounds.is_none(), "the new parameter has no bounds");
     assert_eq!(model.geometry.paths[0].segments.len(), 2);
     assert_eq!((model.mesh.sizes.len(), model.output.tables.len(), model.events.len()), (2, 2, 0));
 }
@@ -200,4 +200,21 @@ fn a_state_without_an_equation_is_balanced_by_the_energies_in_which_it_occurs() 
     let owners = owners(&model);
     assert_eq!(owners[d], Owner::Energy);
     assert_eq!(owners.iter().filter(|owner| **owner == Owner::Energy).count(), 1);
+}
+
+#[test]
+fn a_checked_model_can_be_read() {
+    let (model, words) =
+        variant("test \"law\" { for d in {1, 2} um { expect spring(d) ~= k*d within 1 %; } }");
+    let model = model.unwrap_or_else(|| panic!("{words}"));
+    insta::assert_snapshot!("model_listing", model.print());
+}
+
+#[test]
+fn an_equation_that_is_left_out_of_the_shipped_model_is_missed() {
+    let without = dry().replace("    tau     == hill(eta, v_f);", "");
+    let (model, diagnostics, sources) = checked("dry/model.ansatz", &without, Path::new("."));
+    assert!(model.is_none());
+    let words = render(&diagnostics, &sources);
+    assert!(words.contains("error[E201]: 5 states, 4 equations: nothing determines `v_f`"), "{words}");
 }

@@ -54,6 +54,11 @@ pub(super) fn find(name: &str) -> Option<Builtin> {
     PLAIN.iter().find(|(known, _)| *known == name).map(|(_, builtin)| *builtin)
 }
 
+/// The name of a function of values.
+pub(super) fn name(builtin: Builtin) -> &'static str {
+    PLAIN.iter().find(|(_, known)| *known == builtin).map_or("polar", |(name, _)| name)
+}
+
 /// Whether the name is that of a function that looks at more than values.
 pub(super) fn is_special(name: &str) -> bool {
     SPECIAL.contains(&name)

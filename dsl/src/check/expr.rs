@@ -166,7 +166,34 @@ impl Checker<'_> {
                 "`{name}` is a unit only right behind a number; longer units stand in brackets"
             ));
         }
+        if let Some(place) = self.private(name) {
+            diagnostic = diagnostic.label(place, "this one is private to its block");
+        }
         self.report(diagnostic)
+    }
+
+    /// Where a block of the model declares a `let` of this name for itself.
+    fn private(&self, name: &str) -> Option<Span> {
+        let lets = |item: &ast::Item| -> Vec<ast::Ident> {
+            match &item.kind {
+                ast::ItemKind::Physics(block) => {
+                    let lets = block.statements.iter().filter_map(|statement| match &statement.kind {
+                        ast::StatementKind::Let(item) => Some(item.name.clone()),
+                        _ => None,
+                    });
+                    lets.collect()
+                }
+                ast::ItemKind::Fn(function) => {
+                    let lets = function.locals.iter().filter_map(|item| match item {
+                        ast::BodyItem::Let(item) => Some(item.name.clone()),
+                        ast::BodyItem::Local(_) => None,
+                    });
+                    lets.collect()
+                }
+                _ => Vec::new(),
+            }
+        };
+        self.program.items.iter().flat_map(lets).find(|found| found.text == name).map(|found| found.span)
     }
 
     fn unary(&mut self, op: UnaryOp, operand: &ast::Expr, span: Span, env: &Env) -> Checked<Expr> {

@@ -1,12 +1,14 @@
 //! Stage 3 of 6: gives every name an id and every expression a type. Input: a [`Program`]. Output: a [`Model`], or diagnostics.
 //!
-//! Items may stand in any order: what a name stands for is elaborated when it is first met ([`Slot`]). A faulty item is reported once and its
-//! name says nothing afterwards ([`Reported`]). Two passes over the finished model follow: [`place`] asks whether values exist where they
+//! Items may stand in any order: what a name stands for is elaborated when it is first met (`Slot`). A faulty item is reported once and its
+//! name says nothing afterwards (`Reported`). Two passes over the finished model follow: `place` asks whether values exist where they
 //! are used, [`dae`] counts equations.
 
 mod builtin;
 mod call;
 mod constant;
+mod context;
+mod cover;
 pub mod dae;
 mod domain;
 mod expr;
@@ -21,6 +23,7 @@ mod pair;
 mod param;
 mod physics;
 mod place;
+mod print;
 mod reduce;
 mod settings;
 mod shape;
@@ -230,3 +233,6 @@ pub(crate) fn zero(span: crate::source::Span) -> Expr {
         span,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,117 +1,16 @@
 //! Do values exist where they are used? A field lives on its regions, a gap on its pair, a state in a run; one number in time cannot vary in
 //! space, and a parameter is known before everything else.
 
+use super::context::{Context, Ingredient, ingredient};
 use super::domain::piece_words;
 use super::walk::{Definition, check_exprs, deep, no_circles};
 use crate::diagnostic::{Code, Diagnostic, Sink};
 use crate::model::{
-    Action, Bounds, Domain, Every, Expr, ExprKind, Field, Model, ParamId, PathId, Piece, RegionId,
-    SegmentKind, Start, StatementKind, Trigger,
+    Action, Bounds, Domain, Every, Expr, ExprKind, Field, Model, ParamId, Piece, RegionId, SegmentKind,
+    Start, StatementKind, Trigger,
 };
 use crate::source::Span;
 use std::collections::BTreeSet;
-
-/// What an expression may be made of, beyond parameters and numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Ingredient {
-    Field,
-    State,
-    Time,
-    Coordinate,
-    Region,
-    Gap,
-    Test,
-    Functional,
-    Measure,
-    Run,
-    Held,
-}
-
-/// What is known at one kind of place.
-#[derive(Clone, Copy)]
-struct Context<'c> {
-    known: &'static [Ingredient],
-    domain: Option<&'c Domain>,
-}
-
-impl Context<'_> {
-    /// Before the run, and before there is a mesh.
-    const CONSTANT: Context<'static> = Context { known: &[], domain: None };
-    /// One number at each time.
-    const GLOBAL: Context<'static> = Context {
-        known: &[Ingredient::State, Ingredient::Time, Ingredient::Functional, Ingredient::Measure],
-        domain: None,
-    };
-    /// Conditions of events.
-    const EVENT: Context<'static> = Context {
-        known: &[
-            Ingredient::State,
-            Ingredient::Time,
-            Ingredient::Functional,
-            Ingredient::Measure,
-            Ingredient::Held,
-        ],
-        domain: None,
-    };
-    /// One number of a finished run.
-    const RESULT: Context<'static> = Context {
-        known: &[
-            Ingredient::State,
-            Ingredient::Time,
-            Ingredient::Functional,
-            Ingredient::Measure,
-            Ingredient::Run,
-        ],
-        domain: None,
-    };
-    /// Tests: no time of their own.
-    const TEST: Context<'static> = Context { known: &[Ingredient::Measure, Ingredient::Run], domain: None };
-    /// The start of a state.
-    const START: Context<'static> = Context { known: &[Ingredient::Measure], domain: None };
-
-    /// The start of a field.
-    fn field_start(domain: &Domain) -> Context<'_> {
-        Context {
-            known: &[Ingredient::Coordinate, Ingredient::Region, Ingredient::Measure],
-            domain: Some(domain),
-        }
-    }
-
-    /// At the points of a domain.
-    fn on(domain: &Domain) -> Context<'_> {
-        Context {
-            known: &[
-                Ingredient::Field,
-                Ingredient::State,
-                Ingredient::Time,
-                Ingredient::Coordinate,
-                Ingredient::Region,
-                Ingredient::Gap,
-                Ingredient::Functional,
-                Ingredient::Measure,
-            ],
-            domain: Some(domain),
-        }
-    }
-
-    /// In a weak form.
-    fn weak(domain: &Domain) -> Context<'_> {
-        Context {
-            known: &[
-                Ingredient::Field,
-                Ingredient::State,
-                Ingredient::Time,
-                Ingredient::Coordinate,
-                Ingredient::Region,
-                Ingredient::Gap,
-                Ingredient::Functional,
-                Ingredient::Measure,
-                Ingredient::Test,
-            ],
-            domain: Some(domain),
-        }
-    }
-}
 
 /// Reports everything that is used where it does not exist.
 pub(super) fn check(model: &Model, sink: &mut Sink) {
@@ -438,7 +337,7 @@ impl<'m> Placer<'m, '_> {
             }
             ExprKind::MatchRegion(arms, None) => {
                 let covered: Vec<RegionId> = arms.iter().map(|(region, _)| *region).collect();
-                if let Some(piece) = self.uncovered(domain, &covered) {
+                if let Some(piece) = self.model.uncovered(domain, &covered) {
                     let names =
                         covered.iter().map(|r| format!("`{}`", self.model.geometry.regions[r.0].name));
                     let message = format!("this choice by region has no arm for {}", self.piece(piece));
@@ -467,11 +366,11 @@ impl<'m> Placer<'m, '_> {
     }
 
     fn field_on(&mut self, field: &Field, domain: &Domain, place: Span, inner: Option<Span>) {
-        let regions: Vec<RegionId> = field.domain.pieces.iter().filter_map(|piece| region(*piece)).collect();
+        let regions = field.domain.regions();
         if regions.is_empty() {
             return;
         }
-        if let Some(piece) = self.uncovered(domain, &regions) {
+        if let Some(piece) = self.model.uncovered(domain, &regions) {
             let message = format!("field `{}` does not exist on {}", field.name, self.piece(piece));
             self.missing(place, inner.unwrap_or(place), domain, message);
         }
@@ -480,71 +379,8 @@ impl<'m> Placer<'m, '_> {
     fn piece(&self, piece: Piece) -> String {
         piece_words(&self.model.geometry, &self.model.pairs, piece)
     }
-
-    /// The first piece of a domain that is none of these regions, nor bounds one.
-    fn uncovered(&self, domain: &Domain, regions: &[RegionId]) -> Option<Piece> {
-        let simple = domain.pieces.iter().flat_map(|piece| self.surfaces(*piece));
-        simple.into_iter().find(|piece| match piece {
-            Piece::Region(id) => !regions.contains(id),
-            edge => !regions.iter().any(|id| self.bounds(*id, *edge)),
-        })
-    }
-
-    /// A contact piece as its surfaces, a path as its segments where only those bound regions.
-    fn surfaces(&self, piece: Piece) -> Vec<Piece> {
-        let pair = |id: crate::model::PairId| &self.model.pairs[id.0];
-        match piece {
-            Piece::First(id) => {
-                pair(id).first.pieces.iter().flat_map(|piece| self.surfaces(*piece)).collect()
-            }
-            Piece::Pair(id) => {
-                let both = pair(id).first.pieces.iter().chain(&pair(id).second.pieces);
-                both.flat_map(|piece| self.surfaces(*piece)).collect()
-            }
-            Piece::Path(id) => self.segments(id),
-            other => vec![other],
-        }
-    }
-
-    fn segments(&self, path: PathId) -> Vec<Piece> {
-        (0..self.model.geometry.paths[path.0].segments.len()).map(|at| Piece::Segment(path, at)).collect()
-    }
-
-    /// Whether an edge is on the boundary of a region.
-    fn bounds(&self, id: RegionId, edge: Piece) -> bool {
-        self.model.geometry.regions[id.0].boundary.iter().any(|known| match (*known, edge) {
-            (Piece::Path(p), Piece::Segment(q, _)) => p == q,
-            (a, b) => a == b,
-        })
-    }
-}
-
-fn region(piece: Piece) -> Option<RegionId> {
-    match piece {
-        Piece::Region(id) => Some(id),
-        _ => None,
-    }
 }
 
 fn on_or_global(domain: Option<&Domain>) -> Context<'_> {
     domain.map_or(Context::GLOBAL, Context::on)
-}
-
-fn ingredient(e: &Expr) -> Option<Ingredient> {
-    Some(match &e.kind {
-        ExprKind::Field(_) => Ingredient::Field,
-        ExprKind::Test(_) => Ingredient::Test,
-        ExprKind::State(_) => Ingredient::State,
-        ExprKind::Time => Ingredient::Time,
-        ExprKind::Coordinate(_) => Ingredient::Coordinate,
-        ExprKind::MatchRegion(..) => Ingredient::Region,
-        ExprKind::Gap(_) => Ingredient::Gap,
-        ExprKind::Reduce(..) | ExprKind::Force(..) | ExprKind::AtPoint(..) => Ingredient::Functional,
-        ExprKind::Measure(_) => Ingredient::Measure,
-        ExprKind::ReduceRun(..) | ExprKind::AtTime(..) | ExprKind::AtEvent(..) | ExprKind::OutcomeIs(_) => {
-            Ingredient::Run
-        }
-        ExprKind::Held(..) => Ingredient::Held,
-        _ => return None,
-    })
 }

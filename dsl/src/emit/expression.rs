@@ -21,6 +21,8 @@ pub enum Dialect {
 /// How tightly a printed formula binds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Binding {
+    /// `if`: binds nothing.
+    Choice,
     Sum,
     Product,
     Prefix,
@@ -166,7 +168,7 @@ impl Printer<'_, '_> {
             Node::Binary(op, x, y) => self.binary(id, op, [x, y], names),
             Node::Power(x, exponent) => (self.power(x, exponent, names), Binding::Postfix),
             Node::Select { relation, lhs, rhs, then, otherwise } => {
-                (self.select(relation, [lhs, rhs], [then, otherwise], names), Binding::Postfix)
+                self.select(relation, [lhs, rhs], [then, otherwise], names)
             }
         }
     }
@@ -268,19 +270,19 @@ impl Printer<'_, '_> {
         }
     }
 
-    fn select(&self, relation: Relation, [lhs, rhs]: [Id; 2], [then, otherwise]: [Id; 2], names: &Names) -> TokenStream {
+    fn select(&self, relation: Relation, [lhs, rhs]: [Id; 2], [then, otherwise]: [Id; 2], names: &Names) -> Formula {
         let (then, otherwise) = (self.value(then, names), self.value(otherwise, names));
         if self.dialect == Dialect::Lanes {
             let (lhs, rhs) = (self.bound(lhs, names, Binding::Postfix), self.value(rhs, names));
             let method = ident(if relation == Relation::Less { "less" } else { "less_equal" });
-            return quote!(#lhs.#method(#rhs).select(#then, #otherwise));
+            return (quote!(#lhs.#method(#rhs).select(#then, #otherwise)), Binding::Postfix);
         }
         if let Some(switch) = self.switch(rhs) {
-            return quote!((if switches[#switch] { #then } else { #otherwise }));
+            return (quote!(if switches[#switch] { #then } else { #otherwise }), Binding::Choice);
         }
         let (lhs, rhs) = (self.value(lhs, names), self.value(rhs, names));
         let sign = if relation == Relation::Less { quote!(<) } else { quote!(<=) };
-        quote!((if #lhs #sign #rhs { #then } else { #otherwise }))
+        (quote!(if #lhs #sign #rhs { #then } else { #otherwise }), Binding::Choice)
     }
 
     /// The number of a switch, where that is what is compared.

@@ -59,7 +59,7 @@ pub fn geometry(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
                     Err(found) => errors.extend(found),
                 }
             }
-            let regions = vec![#(#regions),*];
+            let regions = Vec::from([#(#regions),*]);
             if errors.is_empty() { Ok(Geometry { paths, regions, axisymmetric: #axisymmetric }) } else { Err(errors) }
         }
     }
@@ -101,10 +101,10 @@ pub fn sizing(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
                 None => vec![quote!(Place::Everywhere)],
                 Some(domain) => domain.pieces.iter().map(|&piece| place(model, piece)).collect(),
             };
-            quote!(SizeRule { size: #size, on: vec![#(#places),*] })
+            quote!(SizeRule { size: #size, on: Vec::from([#(#places),*]) })
         });
         let (growth, quality) = (&values[values.len() - 2], &values[values.len() - 1]);
-        quote!(MeshSizing { rules: vec![#(#rules),*], growth: #growth, quality: #quality })
+        quote!(MeshSizing { rules: Vec::from([#(#rules),*]), growth: #growth, quality: #quality })
     })
 }
 

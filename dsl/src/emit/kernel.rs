@@ -17,6 +17,13 @@ pub fn kernel(kernel: &Kernel, lowering: &Lowering<'_>, slots: &Slots, tables: &
     Emitter { kernel, lowering, slots, names: Names::new(&RESERVED) }.function(tables, place)
 }
 
+/// The call of a kernel for all registers as the formatter leaves it, since it does not look into macros, and as it should be.
+pub const INVOCATION_AS_PRINTED: &str = "vectorize!(
+            lanes(batch : & Batch < '_ >, g : & [f64], out : & mut [[f64; BATCH]])
+        );";
+/// See [`INVOCATION_AS_PRINTED`].
+pub const INVOCATION: &str = "vectorize!(lanes(batch: &Batch<'_>, g: &[f64], out: &mut [[f64; BATCH]]));";
+
 /// Variables of every kernel.
 const RESERVED: [&str; 20] = [
     "s", "o", "batch", "g", "out", "q", "a", "b", "weight", "x", "point", "map", "residual", "tangent", "columns", "total", "node", "v",

@@ -31,7 +31,7 @@ pub use program::Plan;
 pub fn rust(forms: &mut Forms<'_>, plan: &Plan, sources: &SourceMap) -> Result<String, Box<Diagnostic>> {
     let tokens = program::module(forms, plan, sources);
     let file: syn::File = syn::parse2(tokens).map_err(|error| internal(Span::default(), &format!("emitted text is no Rust: {error}")))?;
-    Ok(prettyplease::unparse(&file))
+    Ok(prettyplease::unparse(&file).replace(kernel::INVOCATION_AS_PRINTED, kernel::INVOCATION))
 }
 
 /// An identifier from a name of the model: other characters become underscores, words of Rust get one behind.

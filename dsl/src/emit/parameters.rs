@@ -43,7 +43,7 @@ pub fn structure(forms: &Forms<'_>) -> TokenStream {
         impl Parameters {
             /// All values, in the order of the model.
             pub fn values(&self) -> Vec<f64> {
-                vec![#(self.#names),*]
+                Vec::from([#(self.#names),*])
             }
         }
     }
@@ -64,7 +64,7 @@ fn entry(forms: &mut Forms<'_>, slots: &Slots, param: &Param, setting: &Paramete
     let (range, choices) = match &setting.bounds {
         Bounds::Any => (unbounded, quote!(|_| None)),
         Bounds::Range(ends) => (list(lowering, slots, ends, &|values| quote!((#(#values),*))), quote!(|_| None)),
-        Bounds::Set(set) => (unbounded, list(lowering, slots, set, &|values| quote!(Some(vec![#(#values),*])))),
+        Bounds::Set(set) => (unbounded, list(lowering, slots, set, &|values| quote!(Some(Vec::from([#(#values),*]))))),
     };
     let (name, doc, (si, unit)) = (&param.name, &param.doc, &param.unit);
     let unit_value = number(lowering.model.units.to_internal(*si, param.dimension));

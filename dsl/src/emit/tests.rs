@@ -86,7 +86,7 @@ fn one_test(lowering: &mut Lowering<'_>, slots: &Slots, sources: &SourceMap, tes
         evaluate: |record| {
             let Some(g) = record.steps().last() else { return Vec::new() };
             #run
-            vec![#(#expectations),*]
+            Vec::from([#(#expectations),*])
         },
     })
 }

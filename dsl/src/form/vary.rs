@@ -48,6 +48,8 @@ pub struct Term {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Variation {
     pub(super) value: Option<Id>,
+    /// Whether the flux is the whole gradient of the value, so that the tangent is its Hessian.
+    is_gradient: bool,
     pub(super) tests: Vec<FieldInput>,
     pub(super) flux: Vec<Id>,
 }
@@ -60,7 +62,10 @@ impl Variation {
             _ => None,
         });
         let flux = derive::gradient(&mut lowering.pool, density, &symbols);
-        Variation { value: Some(density), tests, flux }.cleaned(lowering)
+        let is_gradient = !symbols_of(&lowering.pool, &[density])
+            .into_iter()
+            .any(|symbol| matches!(lowering.symbols.kind(symbol), SymbolKind::Frozen(_) | SymbolKind::FieldRate(_)));
+        Variation { value: Some(density), is_gradient, tests, flux }.cleaned(lowering)
     }
 
     /// Of the virtual work `-f . delta q`. Time derivatives in `q` are varied like what they are derivatives of (virtual power).
@@ -88,7 +93,7 @@ impl Variation {
             _ => None,
         });
         let flux = derive::gradient(&mut lowering.pool, residual, &symbols);
-        Variation { value: None, tests, flux }.cleaned(lowering)
+        Variation { tests, flux, ..Variation::default() }.cleaned(lowering)
     }
 
     /// Whether nothing is left of it.
@@ -131,8 +136,11 @@ pub(super) struct Origin {
 
 /// Differentiates a variation by fields, states and quantities.
 pub(super) fn linearise(lowering: &mut Lowering<'_>, origin: Origin, region: Region, variation: Variation) -> Term {
-    let Variation { value, tests, flux } = variation;
-    let (trials, tangent) = tangent(lowering, &flux);
+    let Variation { value, is_gradient, tests, flux } = variation;
+    let (trials, tangent) = match value.filter(|_| is_gradient) {
+        Some(value) => hessian(lowering, value, &tests),
+        None => tangent(lowering, &flux),
+    };
     let roots: Vec<Id> = flux.iter().copied().chain(value).collect();
     let uses: BTreeSet<FieldId> = symbols_of(&lowering.pool, &roots)
         .into_iter()
@@ -149,6 +157,18 @@ pub(super) fn linearise(lowering: &mut Lowering<'_>, origin: Origin, region: Reg
     let Origin { name, block, span } = origin;
     let uses = uses.into_iter().collect();
     Term { name, block, span, region, uses, value, tests, flux, trials, tangent, symmetric, globals, degree }
+}
+
+/// Trials and second derivatives of an energy; no trials where all are zero.
+fn hessian(lowering: &mut Lowering<'_>, energy: Id, tests: &[FieldInput]) -> (Vec<FieldInput>, Vec<Vec<Id>>) {
+    let symbols: Vec<Symbol> = tests.iter().map(|&test| lowering.symbols.symbol(SymbolKind::Field(test))).collect();
+    let triangle = derive::hessian(&mut lowering.pool, energy, &symbols);
+    if triangle.iter().all(|&entry| lowering.pool.as_constant(entry) == Some(0.0)) {
+        return (Vec::new(), vec![Vec::new(); tests.len()]);
+    }
+    let at = |i: usize, j: usize| triangle[i.max(j) * (i.max(j) + 1) / 2 + i.min(j)];
+    let rows = (0..tests.len()).map(|i| (0..tests.len()).map(|j| at(i, j)).collect()).collect();
+    (tests.to_vec(), rows)
 }
 
 /// Trials, and the derivative of each flux by each of them; trials on which nothing depends are left out.

@@ -9,6 +9,8 @@
 pub mod cost;
 pub mod interpret;
 pub mod print;
+#[cfg(test)]
+mod tests;
 
 use crate::form::Term;
 use crate::lower::{FieldInput, Lowering, Region, SymbolKind};
@@ -199,7 +201,10 @@ pub fn kernels(lowering: &mut Lowering<'_>, term: &Term, name: &str) -> Kernels 
             let row = weighted(lowering, row);
             row.into_iter().map(|id| (id != zero).then_some(id)).collect()
         });
-        let entries = rows.collect();
+        let mut entries: Vec<Vec<Option<Id>>> = rows.collect();
+        if term.symmetric {
+            mirror(&mut entries);
+        }
         let tangent = Tangent { tests: term.tests.clone(), trials: term.trials.clone(), entries, symmetric: term.symmetric };
         make(lowering, "tangent", Job::Tangent(flux.clone(), tangent))
     });
@@ -211,6 +216,15 @@ pub fn kernels(lowering: &mut Lowering<'_>, term: &Term, name: &str) -> Kernels 
     });
     let residual = Some(make(lowering, "residual", Job::Residual(flux)));
     Kernels { value, residual, tangent, columns }
+}
+
+/// Takes the lower triangle for the upper one too, so that nothing is computed twice.
+fn mirror(entries: &mut [Vec<Option<Id>>]) {
+    for i in 0..entries.len() {
+        for j in 0..i {
+            entries[j][i] = entries[i][j];
+        }
+    }
 }
 
 fn build(lowering: &mut Lowering<'_>, term: &Term, name: String, job: Job) -> Kernel {

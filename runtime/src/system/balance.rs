@@ -7,6 +7,9 @@ use super::terms::At;
 use super::unknowns::NONE;
 use crate::error::Cause;
 
+/// Roundings that add up in an assembled residual.
+const ROUNDINGS: f64 = 8.0;
+
 /// The linearised balance at one point: residual, matrix values (kept in the system) and one outer product b c^T for each functional.
 #[derive(Clone, Debug, Default)]
 pub struct Balance {
@@ -102,6 +105,24 @@ impl System {
         let at = At { y, rates, g: &self.g, alpha };
         self.terms.iter_mut().for_each(|t| t.add_magnitude(at, &mut magnitude));
         norm(&self.restrict(&magnitude))
+    }
+
+    /// Residual that rounding alone may leave: the diagonal of the last tangent times the rounding of the unknowns, and of the positions that
+    /// displacements (fields measured in the unit of length) add to.
+    pub(super) fn rounding(&self, y: &[f64]) -> f64 {
+        let length = self.program.base_units[0];
+        let mut sum = 0.0;
+        for (field, numbers) in self.program.fields.iter().zip(&self.unknowns.fields) {
+            let offset = if field.unit == length { self.cell_size } else { 0.0 };
+            for unknown in numbers.first..numbers.first + numbers.count() {
+                let equation = self.equations[unknown];
+                if equation != NONE {
+                    let diagonal = self.values[self.diagonal[equation as usize]];
+                    sum += (diagonal * (y[unknown].abs() + offset)).powi(2);
+                }
+            }
+        }
+        ROUNDINGS * f64::EPSILON * sum.sqrt()
     }
 
     /// Linearises the balance at a settled point; matrix values go to `self.values`.

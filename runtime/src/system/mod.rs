@@ -66,6 +66,10 @@ pub struct System {
     solver: BorderedSolver,
     /// Matrix values and one spare entry for what belongs to held unknowns.
     values: Vec<f64>,
+    /// Place of each equation's diagonal entry in the values.
+    diagonal: Vec<usize>,
+    /// Typical edge length of a cell.
+    cell_size: f64,
     /// The last factorisation met negative pivots: the next one starts with the indefinite method.
     indefinite: bool,
 }
@@ -95,6 +99,7 @@ impl System {
             let bounds = program.states.iter().map(|s| (s.bounds)(&g)).collect();
             StateSolver::new(system, program.layout, bounds)
         });
+        let cell_size = (mesh.cells.len().max(1) as f64).recip().sqrt() * mesh_extent(&mesh);
         let mut system = Self {
             program,
             settings: (program.solve)(&g),
@@ -113,6 +118,8 @@ impl System {
             pattern,
             solver,
             values: Vec::new(),
+            diagonal: Vec::new(),
+            cell_size,
             indefinite: false,
         };
         let y = vec![0.0; system.unknowns.length];
@@ -149,6 +156,8 @@ impl System {
             SparsePattern::from_elements(self.free.len(), self.kind, groups.iter().map(Vec::as_slice));
         self.solver = analyse(&self.pattern, self.functionals.len())?;
         self.values = vec![0.0; self.pattern.entries() + 1];
+        let diagonal = (0..self.free.len() as u32).filter_map(|i| self.pattern.position(i, i));
+        self.diagonal = diagonal.collect();
         for term in &mut self.terms {
             term.locate(&self.pattern, &self.equations);
         }
@@ -163,4 +172,13 @@ impl System {
 
 fn analyse(pattern: &SparsePattern, borders: usize) -> Result<BorderedSolver, Error> {
     BorderedSolver::new(pattern, borders).map_err(|e| Error::Model(e.to_string()))
+}
+
+/// Diagonal of the box around a mesh.
+fn mesh_extent(mesh: &Mesh) -> f64 {
+    let span = |axis: usize| {
+        let values = || mesh.nodes.iter().map(|x| x[axis]);
+        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+    };
+    if mesh.nodes.is_empty() { 0.0 } else { span(0).hypot(span(1)) }
 }

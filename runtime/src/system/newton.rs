@@ -90,7 +90,7 @@ impl System {
         let scale = self.force_scale(&current.y, &current.rates, problem.alpha);
         let size = norm(&current.residual);
         report.residual = if scale > 0.0 { size / scale } else { size };
-        Ok(size <= self.settings.newton_tolerance * scale || size < f64::MIN_POSITIVE.sqrt())
+        Ok(size <= (self.settings.newton_tolerance * scale).max(self.rounding(&current.y)))
     }
 
     /// Newton direction at the current iterate.

@@ -218,3 +218,24 @@ fn an_equation_that_is_left_out_of_the_shipped_model_is_missed() {
     let words = render(&diagnostics, &sources);
     assert!(words.contains("error[E201]: 5 states, 4 equations: nothing determines `v_f`"), "{words}");
 }
+
+#[test]
+fn a_missing_semicolon_is_one_error() {
+    let text = dry();
+    let ends: Vec<usize> = text.match_indices(";\n").map(|(at, _)| at).collect();
+    for at in ends {
+        let broken = format!("{}{}", &text[..at], &text[at + 1..]);
+        let (_, diagnostics, sources) = checked("dry/model.ansatz", &broken, Path::new("."));
+        assert_eq!(diagnostics.len(), 1, "{}", render(&diagnostics, &sources));
+    }
+}
+
+#[test]
+fn no_text_makes_the_checker_panic() {
+    let text = dry();
+    let tokens: Vec<(usize, &str)> = text.match_indices(|c: char| !c.is_whitespace()).collect();
+    for (at, token) in tokens.into_iter().step_by(7) {
+        let shorter = format!("{}{}", &text[..at], &text[at + token.len()..]);
+        let _ = checked("dry/model.ansatz", &shorter, Path::new("."));
+    }
+}

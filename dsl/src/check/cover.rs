@@ -43,11 +43,13 @@ impl Model {
         (0..self.geometry.paths[path.0].segments.len()).map(|at| Piece::Segment(path, at)).collect()
     }
 
-    /// Whether an edge is on the boundary of a region.
+    /// Whether an edge is on the boundary of a region; a region whose loop is faulty says nothing.
     fn bounds(&self, id: RegionId, edge: Piece) -> bool {
-        self.geometry.regions[id.0].boundary.iter().any(|known| match (*known, edge) {
+        let boundary = &self.geometry.regions[id.0].boundary;
+        let on = |known: &Piece| match (*known, edge) {
             (Piece::Path(p), Piece::Segment(q, _)) => p == q,
             (a, b) => a == b,
-        })
+        };
+        boundary.is_empty() || boundary.iter().any(on)
     }
 }

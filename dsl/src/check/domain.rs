@@ -259,6 +259,7 @@ pub(crate) fn piece_words(geometry: &crate::model::Geometry, pairs: &[Pair], pie
             let path = &geometry.paths[id.0];
             match &path.segments[at].label {
                 Some(label) => format!("`{}.{label}`", path.name),
+                None if path.segments.len() == 1 => format!("`{}`", path.name),
                 None => format!("segment {} of `{}`", at + 1, path.name),
             }
         }

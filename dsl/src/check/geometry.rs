@@ -1,6 +1,6 @@
 //! The geometry block: paths, their segments and labels, and the regions inside loops of them.
 
-use super::{Checked, Checker, Env, Reported, zero};
+use super::{Checked, Checker, Env, domain, zero};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::model::{Path, Piece, Region, RegionId, Segment, SegmentKind, Turn, Type};
 use crate::resolve::Program;
@@ -129,55 +129,44 @@ impl<'a> Checker<'a> {
 
     /// The pieces of `loop(..)`.
     fn region_boundary(&mut self, value: &ast::Expr) -> Checked<Vec<Piece>> {
-        let env = Env::default();
         let args = match &value.kind {
             ast::ExprKind::Call { callee, args }
-                if callee.as_name().is_some_and(|name| name.text == "loop") =>
+                if !args.is_empty() && callee.as_name().is_some_and(|name| name.text == "loop") =>
             {
                 args
             }
             _ => {
+                let message = "a region is the inside of a loop of paths";
                 return Err(self.report(
-                    Diagnostic::error(
-                        Code::WrongKind,
-                        value.span,
-                        "a region is the inside of a loop of paths",
-                    )
-                    .help("write `loop(a, b, axis)`, with paths and `path.label`s"),
+                    Diagnostic::error(Code::WrongKind, value.span, message)
+                        .help("write `loop(a, b, axis)`, with paths and `path.label`s"),
                 ));
             }
         };
         let mut boundary = Vec::new();
         let mut fault = None;
         for arg in args {
-            match self.domain(&arg.value, &env) {
-                Ok(domain) => {
-                    for piece in domain.pieces {
-                        match piece {
-                            Piece::Region(_) | Piece::First(_) | Piece::Pair(_) => {
-                                let message = "a loop is made of paths";
-                                fault =
-                                    Some(self.report(Diagnostic::error(Code::WrongKind, arg.span, message)));
-                            }
-                            edge if boundary.contains(&edge) => {
-                                let message = format!("{} is in this loop twice", self.piece_words(edge));
-                                fault = Some(self.report(Diagnostic::error(
-                                    Code::DuplicateName,
-                                    arg.span,
-                                    message,
-                                )));
-                            }
-                            edge => boundary.push(edge),
-                        }
-                    }
-                }
-                Err(reported) => fault = Some(reported),
+            if let Err(reported) = self.add_to_loop(&arg.value, &mut boundary) {
+                fault = Some(reported);
             }
         }
-        match fault {
-            Some(Reported) => Err(Reported),
-            None => Ok(boundary),
+        fault.map_or(Ok(boundary), Err)
+    }
+
+    /// Adds the edges of one argument of a loop.
+    fn add_to_loop(&mut self, e: &ast::Expr, boundary: &mut Vec<Piece>) -> Checked<()> {
+        let domain = self.domain(e, &Env::default())?;
+        if domain::kind(&domain) != domain::Kind::Edges {
+            return Err(self.report(Diagnostic::error(Code::WrongKind, e.span, "a loop is made of paths")));
         }
+        for edge in domain.pieces {
+            if boundary.contains(&edge) {
+                let message = format!("{} is in this loop twice", self.piece_words(edge));
+                return Err(self.report(Diagnostic::error(Code::DuplicateName, e.span, message)));
+            }
+            boundary.push(edge);
+        }
+        Ok(())
     }
 }
 

@@ -37,7 +37,12 @@ pub fn number<'m>(lowering: &mut Lowering<'m>, expr: &'m Expr, parameters: &[f64
 }
 
 /// Values of scalars from parameters and variables; NaN for other symbols.
-fn values_of(lowering: &Lowering<'_>, roots: &[Id], parameters: &[f64], variables: &[(Symbol, f64)]) -> Vec<f64> {
+fn values_of(
+    lowering: &Lowering<'_>,
+    roots: &[Id],
+    parameters: &[f64],
+    variables: &[(Symbol, f64)],
+) -> Vec<f64> {
     eval(&lowering.pool, roots, &|symbol| match lowering.symbols.kind(symbol) {
         SymbolKind::Parameter(param) => parameters.get(param.0).copied().unwrap_or(f64::NAN),
         _ => variables.iter().find(|(s, _)| *s == symbol).map_or(f64::NAN, |(_, value)| *value),
@@ -63,11 +68,17 @@ fn check_bounds(forms: &Forms<'_>, parameters: &[f64], sink: &mut Sink) {
                 let slack = 1e-12 * ends[0].abs().max(ends[1].abs());
                 (ends[0] - slack..=ends[1] + slack).contains(&value)
             }
-            Bounds::Set(set) => numbers(set).iter().any(|allowed| (allowed - value).abs() <= 1e-12 * allowed.abs()),
+            Bounds::Set(set) => {
+                numbers(set).iter().any(|allowed| (allowed - value).abs() <= 1e-12 * allowed.abs())
+            }
         };
         if !inside {
-            let message = format!("the default of `{}` is {value}, which its range does not allow", param.name);
-            sink.push(Diagnostic::error(Code::BadRange, param.span, message).help("change the default or the range"));
+            let message =
+                format!("the default of `{}` is {value}, which its range does not allow", param.name);
+            sink.push(
+                Diagnostic::error(Code::BadRange, param.span, message)
+                    .help("change the default or the range"),
+            );
         }
     }
 }

@@ -122,9 +122,18 @@ pub fn assignments(body: &Body) -> TokenStream {
 }
 
 /// `|g| shape(values)`, or `|_| ..` where nothing is read.
-pub fn list(lowering: &mut Lowering<'_>, slots: &Slots, roots: &[Id], shape: &dyn Fn(&[TokenStream]) -> TokenStream) -> TokenStream {
+pub fn list(
+    lowering: &mut Lowering<'_>,
+    slots: &Slots,
+    roots: &[Id],
+    shape: &dyn Fn(&[TokenStream]) -> TokenStream,
+) -> TokenStream {
     let body = body(lowering, slots, Sources::default(), roots);
     let (statements, value) = (&body.statements, shape(&body.results));
     let argument = if body.reads_globals { quote!(g) } else { quote!(_) };
-    if statements.is_empty() { quote!(|#argument| #value) } else { quote!(|#argument| { #(#statements)* #value }) }
+    if statements.is_empty() {
+        quote!(|#argument| #value)
+    } else {
+        quote!(|#argument| { #(#statements)* #value })
+    }
 }

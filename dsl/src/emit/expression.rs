@@ -154,7 +154,11 @@ impl Printer<'_, '_> {
             Node::Const(value) => self.constant(value),
             Node::Input(symbol) => {
                 let kind = self.lowering.symbols.kind(symbol);
-                let name = names.symbols.get(&kind).cloned().unwrap_or_else(|| ident(&crate::lower::symbol_name(self.lowering, kind)));
+                let name = names
+                    .symbols
+                    .get(&kind)
+                    .cloned()
+                    .unwrap_or_else(|| ident(&crate::lower::symbol_name(self.lowering, kind)));
                 (quote!(#name), Binding::Postfix)
             }
             Node::Unary(Unary::Neg, x) => {
@@ -270,7 +274,13 @@ impl Printer<'_, '_> {
         }
     }
 
-    fn select(&self, relation: Relation, [lhs, rhs]: [Id; 2], [then, otherwise]: [Id; 2], names: &Names) -> Formula {
+    fn select(
+        &self,
+        relation: Relation,
+        [lhs, rhs]: [Id; 2],
+        [then, otherwise]: [Id; 2],
+        names: &Names,
+    ) -> Formula {
         let (then, otherwise) = (self.value(then, names), self.value(otherwise, names));
         if self.dialect == Dialect::Lanes {
             let (lhs, rhs) = (self.bound(lhs, names, Binding::Postfix), self.value(rhs, names));

@@ -31,7 +31,8 @@ pub fn fields(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
         };
         let components = Literal::usize_unsuffixed(names.len());
         let space = if field.space == Space::P1 { quote!(Space::P1) } else { quote!(Space::P2) };
-        let regions = Region::of(&field.domain).map(|region| region_names(model, &region)).unwrap_or_default();
+        let regions =
+            Region::of(&field.domain).map(|region| region_names(model, &region)).unwrap_or_default();
         let start = at_point(&mut forms.lowering, slots, start, true);
         quote!(Field {
             name: #name,
@@ -69,11 +70,18 @@ fn reads(lowering: &Lowering<'_>, roots: &[Id], wanted: impl Fn(SymbolKind) -> b
 /// The entries of `Program::holds`.
 pub fn holds(forms: &mut Forms<'_>, slots: &Slots, sources: &SourceMap) -> TokenStream {
     let (model, holds) = (forms.lowering.model, forms.holds.clone());
-    let entries: Vec<TokenStream> = holds.iter().map(|hold| one_hold(&mut forms.lowering, slots, sources, model, hold)).collect();
+    let entries: Vec<TokenStream> =
+        holds.iter().map(|hold| one_hold(&mut forms.lowering, slots, sources, model, hold)).collect();
     quote!(&[#(#entries),*])
 }
 
-fn one_hold(lowering: &mut Lowering<'_>, slots: &Slots, sources: &SourceMap, model: &Model, hold: &Hold) -> TokenStream {
+fn one_hold(
+    lowering: &mut Lowering<'_>,
+    slots: &Slots,
+    sources: &SourceMap,
+    model: &Model,
+    hold: &Hold,
+) -> TokenStream {
     let [field, component] = [hold.field.0, hold.component].map(Literal::usize_unsuffixed);
     let (domain, place) = (domain(model, &hold.region), place(sources, hold.span));
     let value = at_point(lowering, slots, &[hold.value], false);
@@ -96,11 +104,17 @@ pub fn pairs(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
 /// The entries of `Program::pair_integrals`.
 pub fn pair_integrals(forms: &mut Forms<'_>, slots: &Slots, sources: &SourceMap) -> TokenStream {
     let contacts = forms.contacts.clone();
-    let entries: Vec<TokenStream> = contacts.iter().map(|contact| pair_integral(&mut forms.lowering, slots, sources, contact)).collect();
+    let entries: Vec<TokenStream> =
+        contacts.iter().map(|contact| pair_integral(&mut forms.lowering, slots, sources, contact)).collect();
     quote!(&[#(#entries),*])
 }
 
-fn pair_integral(lowering: &mut Lowering<'_>, slots: &Slots, sources: &SourceMap, contact: &Contact) -> TokenStream {
+fn pair_integral(
+    lowering: &mut Lowering<'_>,
+    slots: &Slots,
+    sources: &SourceMap,
+    contact: &Contact,
+) -> TokenStream {
     let (name, place, both) = (&contact.name, place(sources, contact.span), contact.both);
     let [block, pair] = [contact.block.0, contact.pair.0].map(Literal::usize_unsuffixed);
     let reads_gap = reads(lowering, &contact.law, |kind| matches!(kind, SymbolKind::Gap(_)));
@@ -151,7 +165,8 @@ pub fn point_function(lowering: &mut Lowering<'_>, slots: &Slots, form: &PointFo
         many => {
             let arms = many.iter().enumerate().map(|(k, body)| {
                 let (k, code) = (Literal::usize_unsuffixed(k), assignments(body));
-                let pattern = if k.to_string() == (many.len() - 1).to_string() { quote!(_) } else { quote!(#k) };
+                let pattern =
+                    if k.to_string() == (many.len() - 1).to_string() { quote!(_) } else { quote!(#k) };
                 quote!(#pattern => { #code })
             });
             quote!(match region { #(#arms)* })

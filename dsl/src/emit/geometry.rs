@@ -23,16 +23,17 @@ pub fn geometry(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
     let mut next = || results.next().unwrap_or_default();
     let builders = model.geometry.paths.iter().zip(&paths).map(|(definition, path)| {
         let (name, start) = (&definition.name, next());
-        let segments = definition.segments.iter().zip(&path.segments).map(|(segment, (_, arc))| {
+        let segments = definition.segments.iter().zip(&path.segments).map(|(segment, lowered)| {
             let label = match &segment.label {
                 Some(label) => quote!(Some(#label)),
                 None => quote!(None),
             };
             let to = next();
-            match arc {
+            match &lowered.arc {
                 None => quote!(.line(#label, #to)),
                 Some((_, turn)) => {
-                    let (centre, turn) = (next(), if *turn == Turn::Clockwise { quote!(Turn::Cw) } else { quote!(Turn::Ccw) });
+                    let (centre, turn) =
+                        (next(), if *turn == Turn::Clockwise { quote!(Turn::Cw) } else { quote!(Turn::Ccw) });
                     quote!(.arc(#label, #centre, #turn, #to))
                 }
             }
@@ -68,9 +69,9 @@ pub fn geometry(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
 /// Points of a path in the order in which builders read them: start, then end and centre of each segment.
 fn roots(path: &Path) -> Vec<Id> {
     let mut roots = path.start.to_vec();
-    for (to, arc) in &path.segments {
-        roots.extend(to);
-        roots.extend(arc.iter().flat_map(|(centre, _)| centre));
+    for segment in &path.segments {
+        roots.extend(segment.to);
+        roots.extend(segment.arc.iter().flat_map(|(centre, _)| centre));
     }
     roots
 }
@@ -113,7 +114,8 @@ fn place(model: &Model, piece: Piece) -> TokenStream {
     match piece {
         Piece::Region(_) => quote!(Place::Region(#name.into())),
         Piece::Segment(path, _) => {
-            let (path, label) = (&model.geometry.paths[path.0].name, name.rsplit('.').next().unwrap_or_default());
+            let (path, label) =
+                (&model.geometry.paths[path.0].name, name.rsplit('.').next().unwrap_or_default());
             quote!(Place::Segment(#path.into(), #label.into()))
         }
         _ => quote!(Place::Path(#name.into())),
@@ -128,15 +130,25 @@ pub fn solve(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
         Integrator::BackwardEuler => quote!(Integrator::BackwardEuler),
     };
     let iterations = forms.lowering.pool.as_constant(solve.newton_iterations);
-    let mut roots = vec![solve.max_step, solve.min_step, solve.step_tolerance, solve.newton_tolerance, solve.newton_iterations];
+    let mut roots = vec![
+        solve.max_step,
+        solve.min_step,
+        solve.step_tolerance,
+        solve.newton_tolerance,
+        solve.newton_iterations,
+    ];
     roots.extend(solve.time.iter().flatten());
     list(&mut forms.lowering, slots, &roots, &|values| {
-        let [max_step, min_step, step_tolerance, newton_tolerance, newton_iterations, time @ ..] = values else {
+        let [max_step, min_step, step_tolerance, newton_tolerance, newton_iterations, time @ ..] = values
+        else {
             return TokenStream::new();
         };
         let time = if time.is_empty() { quote!(None) } else { quote!(Some((#(#time),*))) };
         let iterations = match iterations {
-            Some(count) => { let count = Literal::usize_unsuffixed(count as usize); quote!(#count) },
+            Some(count) => {
+                let count = Literal::usize_unsuffixed(count as usize);
+                quote!(#count)
+            }
             None => quote!((#newton_iterations) as usize),
         };
         quote!(Solve {

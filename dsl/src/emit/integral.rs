@@ -25,7 +25,14 @@ pub struct Emitted {
 
 impl Emitted {
     /// `Integral { .. }`, with its kernels added to the functions.
-    pub fn integral(&mut self, lowering: &Lowering<'_>, slots: &Slots, sources: &SourceMap, term: &Term, kernels: &Kernels) -> TokenStream {
+    pub fn integral(
+        &mut self,
+        lowering: &Lowering<'_>,
+        slots: &Slots,
+        sources: &SourceMap,
+        term: &Term,
+        kernels: &Kernels,
+    ) -> TokenStream {
         let (name, place) = (term.name.replacen(' ', ": ", 1), place(sources, term.span));
         let about = format!("`{}`, {place}", term.name);
         let block = Literal::usize_unsuffixed(term.block.map_or(0, |block| block.0));
@@ -36,12 +43,21 @@ impl Emitted {
         });
         let uses: Vec<TokenStream> = uses.collect();
         let mut emit = |kernel: &Kernel, what: &str| {
-            self.functions.push(kernel::kernel(kernel, lowering, slots, &mut self.tables, &format!("{about}: {what}")));
+            self.functions.push(kernel::kernel(
+                kernel,
+                lowering,
+                slots,
+                &mut self.tables,
+                &format!("{about}: {what}"),
+            ));
             ident(&kernel.name)
         };
-        let optional = |name: Option<proc_macro2::Ident>| name.map_or(quote!(None), |name| quote!(Some(#name)));
+        let optional =
+            |name: Option<proc_macro2::Ident>| name.map_or(quote!(None), |name| quote!(Some(#name)));
         let value = optional(kernels.value.as_ref().map(|kernel| emit(kernel, "the integral.")));
-        let tangent = optional(kernels.tangent.as_ref().map(|kernel| emit(kernel, "its variation and the tangent of it.")));
+        let tangent = optional(
+            kernels.tangent.as_ref().map(|kernel| emit(kernel, "its variation and the tangent of it.")),
+        );
         let global = match &kernels.columns {
             None => quote!(None),
             Some((kinds, kernel)) => {

@@ -13,7 +13,13 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 /// Emits a kernel.
-pub fn kernel(kernel: &Kernel, lowering: &Lowering<'_>, slots: &Slots, tables: &mut Tables, place: &str) -> TokenStream {
+pub fn kernel(
+    kernel: &Kernel,
+    lowering: &Lowering<'_>,
+    slots: &Slots,
+    tables: &mut Tables,
+    place: &str,
+) -> TokenStream {
     Emitter { kernel, lowering, slots, names: Names::new(&RESERVED) }.function(tables, place)
 }
 
@@ -26,8 +32,8 @@ pub const INVOCATION: &str = "vectorize!(lanes(batch: &Batch<'_>, g: &[f64], out
 
 /// Variables of every kernel.
 const RESERVED: [&str; 20] = [
-    "s", "o", "batch", "g", "out", "q", "a", "b", "weight", "x", "point", "map", "residual", "tangent", "columns", "total", "node", "v",
-    "zero", "basis",
+    "s", "o", "batch", "g", "out", "q", "a", "b", "weight", "x", "point", "map", "residual", "tangent",
+    "columns", "total", "node", "v", "zero", "basis",
 ];
 
 struct Emitter<'a, 'm> {
@@ -83,9 +89,12 @@ impl Emitter<'_, '_> {
                 spread.push(name);
             }
         }
-        let printer = Printer { lowering: self.lowering, schedule: &kernel.schedule, dialect: Dialect::Plain };
+        let printer =
+            Printer { lowering: self.lowering, schedule: &kernel.schedule, dialect: Dialect::Plain };
         code.extend(printer.statements(PRELUDE, &mut self.names));
-        spread.extend(kernel.schedule.statements(PRELUDE).iter().filter_map(|&id| self.names.statement_name(id)));
+        spread.extend(
+            kernel.schedule.statements(PRELUDE).iter().filter_map(|&id| self.names.statement_name(id)),
+        );
         let used = used_at_points(self.lowering, &kernel.schedule, &roots, &self.names);
         let spread = spread.into_iter().filter(|name| used.contains(&name.to_string()));
         quote!(#(#code)* #(let #spread = Lane::splat(s, #spread);)*)
@@ -98,7 +107,10 @@ impl Emitter<'_, '_> {
                 let first = count(self.slots.table(table));
                 Some(quote!(g[#first + batch.region]))
             }
-            SymbolKind::Coordinate(_) | SymbolKind::Field(_) | SymbolKind::FieldRate(_) | SymbolKind::Weight => None,
+            SymbolKind::Coordinate(_)
+            | SymbolKind::Field(_)
+            | SymbolKind::FieldRate(_)
+            | SymbolKind::Weight => None,
             _ => {
                 let slot = count(self.slots.slot(kind));
                 Some(quote!(g[#slot]))
@@ -135,11 +147,17 @@ impl Emitter<'_, '_> {
     fn finish(&self) -> TokenStream {
         match &self.kernel.job {
             Job::Value(_) => quote!(total.store(&mut out[0], o);),
-            Job::Residual(_) => quote!(for (row, sum) in out.iter_mut().zip(residual) { sum.store(row, o); }),
+            Job::Residual(_) => quote!(for (row, sum) in out.iter_mut().zip(residual) {
+                sum.store(row, o);
+            }),
             Job::Tangent(..) => {
-                quote!(for (row, sum) in out.iter_mut().zip(residual.into_iter().chain(tangent)) { sum.store(row, o); })
+                quote!(for (row, sum) in out.iter_mut().zip(residual.into_iter().chain(tangent)) {
+                    sum.store(row, o);
+                })
             }
-            Job::Columns(_) => quote!(for (row, sum) in out.iter_mut().zip(columns) { sum.store(row, o); }),
+            Job::Columns(_) => quote!(for (row, sum) in out.iter_mut().zip(columns) {
+                sum.store(row, o);
+            }),
         }
     }
 
@@ -147,7 +165,8 @@ impl Emitter<'_, '_> {
     fn point(&mut self, tables: &mut Tables) -> TokenStream {
         let map = self.map(tables);
         let interpolation = self.interpolation();
-        let printer = Printer { lowering: self.lowering, schedule: &self.kernel.schedule, dialect: Dialect::Lanes };
+        let printer =
+            Printer { lowering: self.lowering, schedule: &self.kernel.schedule, dialect: Dialect::Lanes };
         let statements = printer.statements(POINT, &mut self.names);
         let sums = match &self.kernel.job {
             Job::Value(density) => {
@@ -157,7 +176,10 @@ impl Emitter<'_, '_> {
             Job::Residual(flux) => self.add_flux(flux, &quote!(residual), 0),
             Job::Columns(columns) => {
                 let n = self.kernel.unknowns();
-                let columns = columns.iter().enumerate().map(|(k, column)| self.add_flux(column, &quote!(columns), k * n));
+                let columns = columns
+                    .iter()
+                    .enumerate()
+                    .map(|(k, column)| self.add_flux(column, &quote!(columns), k * n));
                 let columns: Vec<TokenStream> = columns.collect();
                 quote!(#(#columns)*)
             }
@@ -171,7 +193,8 @@ impl Emitter<'_, '_> {
     }
 
     fn value(&self, id: Id) -> TokenStream {
-        Printer { lowering: self.lowering, schedule: &self.kernel.schedule, dialect: Dialect::Lanes }.value(id, &self.names)
+        Printer { lowering: self.lowering, schedule: &self.kernel.schedule, dialect: Dialect::Lanes }
+            .value(id, &self.names)
     }
 
     /// Position, measure, and the gradients of the bases that are read as derivatives.
@@ -202,7 +225,8 @@ impl Emitter<'_, '_> {
         for one in &kernel.uses {
             let field = self.field_name(one);
             if kernel.needs_gradients(one.field) {
-                let (gradient, reference) = (format_ident!("grad_{field}"), tables.gradients(kernel, one.element));
+                let (gradient, reference) =
+                    (format_ident!("grad_{field}"), tables.gradients(kernel, one.element));
                 code.push(quote!(let #gradient = pull_back(s, &map, &#reference[q]);));
             }
             if kernel.needs_values(one.field) {
@@ -218,7 +242,13 @@ impl Emitter<'_, '_> {
         let mut code = Vec::new();
         for one in &self.kernel.uses {
             for rate in [false, true] {
-                let inputs: Vec<Input> = self.kernel.inputs.iter().filter(|i| i.rate == rate && i.input.field == one.field).copied().collect();
+                let inputs: Vec<Input> = self
+                    .kernel
+                    .inputs
+                    .iter()
+                    .filter(|i| i.rate == rate && i.input.field == one.field)
+                    .copied()
+                    .collect();
                 if !inputs.is_empty() {
                     code.push(self.interpolate(one, rate, &inputs));
                 }
@@ -228,12 +258,16 @@ impl Emitter<'_, '_> {
     }
 
     fn interpolate(&mut self, one: &FieldUse, rate: bool, inputs: &[Input]) -> TokenStream {
-        let kind = |input: &Input| if rate { SymbolKind::FieldRate(input.input) } else { SymbolKind::Field(input.input) };
-        let names: Vec<Ident> = inputs.iter().map(|input| self.names.symbol(self.lowering, kind(input))).collect();
+        let kind = |input: &Input| {
+            if rate { SymbolKind::FieldRate(input.input) } else { SymbolKind::Field(input.input) }
+        };
+        let names: Vec<Ident> =
+            inputs.iter().map(|input| self.names.symbol(self.lowering, kind(input))).collect();
         let rows = if rate { quote!(rates) } else { quote!(values) };
         let mut sums = Vec::new();
         for component in 0..one.components {
-            let of: Vec<usize> = (0..inputs.len()).filter(|&k| inputs[k].input.component == component).collect();
+            let of: Vec<usize> =
+                (0..inputs.len()).filter(|&k| inputs[k].input.component == component).collect();
             if of.is_empty() {
                 continue;
             }
@@ -290,11 +324,18 @@ impl Emitter<'_, '_> {
         for one in &self.kernel.uses {
             let mut sums = Vec::new();
             for component in 0..one.components {
-                let of: Vec<&Flux> = flux.iter().filter(|(test, _)| test.field == one.field && test.component == component).collect();
+                let of: Vec<&Flux> = flux
+                    .iter()
+                    .filter(|(test, _)| test.field == one.field && test.component == component)
+                    .collect();
                 if of.is_empty() {
                     continue;
                 }
-                let row = self.unknown(&FieldUse { first: one.first + first, ..one.clone() }, component, &ident("a"));
+                let row = self.unknown(
+                    &FieldUse { first: one.first + first, ..one.clone() },
+                    component,
+                    &ident("a"),
+                );
                 let mut sum = quote!(#rows[#row]);
                 for (test, id) in of {
                     let name = self.names.unused(&format!("flux_{}", input_name(self.lowering.model, *test)));
@@ -315,7 +356,8 @@ impl Emitter<'_, '_> {
     /// For every trial node: the derivative of the fluxes by its unknowns, then the products with the test functions.
     fn add_tangent(&mut self, tangent: &Tangent) -> TokenStream {
         let entries = self.entry_names(tangent);
-        let (names, values): (Vec<_>, Vec<_>) = entries.iter().flatten().flatten().map(|(name, value)| (name, value)).unzip();
+        let (names, values): (Vec<_>, Vec<_>) =
+            entries.iter().flatten().flatten().map(|(name, value)| (name, value)).unzip();
         let mut code = vec![quote!(#(let #names = #values;)*)];
         for trial in &self.kernel.uses {
             let mut columns = Vec::new();
@@ -360,10 +402,14 @@ impl Emitter<'_, '_> {
                 .iter()
                 .zip(row)
                 .filter(|(input, _)| input.field == trial.field && input.component == component)
-                .filter_map(|(input, entry)| entry.as_ref().map(|(name, _)| (self.basis(trial, *input, &ident("b")), name)))
+                .filter_map(|(input, entry)| {
+                    entry.as_ref().map(|(name, _)| (self.basis(trial, *input, &ident("b")), name))
+                })
                 .collect();
             let Some(((basis, name), rest)) = terms.split_first() else { continue };
-            let sum = rest.iter().fold(quote!(#name * #basis), |sum, (basis, name)| quote!(#name.mul_add(#basis, #sum)));
+            let sum = rest
+                .iter()
+                .fold(quote!(#name * #basis), |sum, (basis, name)| quote!(#name.mul_add(#basis, #sum)));
             let slope = format_ident!("slope_{}", input_name(self.lowering.model, *test));
             code.push(quote!(let #slope = #sum;));
             slopes.push((*test, slope));
@@ -418,8 +464,10 @@ fn used_at_points(
     roots: &[Id],
     names: &Names,
 ) -> std::collections::BTreeSet<String> {
-    let at_points = crate::scalar::reachable(&lowering.pool, roots).into_iter().filter(|&id| schedule.stage(id) == POINT);
-    let mut read: Vec<Id> = at_points.flat_map(|id| lowering.pool.node(id).arguments().collect::<Vec<_>>()).collect();
+    let at_points =
+        crate::scalar::reachable(&lowering.pool, roots).into_iter().filter(|&id| schedule.stage(id) == POINT);
+    let mut read: Vec<Id> =
+        at_points.flat_map(|id| lowering.pool.node(id).arguments().collect::<Vec<_>>()).collect();
     read.extend(roots);
     read.into_iter().filter_map(|id| names.name_of(lowering, id)).map(|name| name.to_string()).collect()
 }

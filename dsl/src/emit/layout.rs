@@ -60,9 +60,14 @@ impl Slots {
             SymbolKind::StateRate(state) => self.state_rates[0] + state.0,
             SymbolKind::Quantity(quantity) => match self.functional(quantity) {
                 Some(row) => self.functionals[0] + row,
-                None => self.observables[0] + self.looked_at.iter().position(|q| *q == quantity).unwrap_or(self.looked_at.len()),
+                None => {
+                    self.observables[0]
+                        + self.looked_at.iter().position(|q| *q == quantity).unwrap_or(self.looked_at.len())
+                }
             },
-            SymbolKind::QuantityRate(quantity) => self.functional_rates[0] + self.functional(quantity).unwrap_or(self.rows.len()),
+            SymbolKind::QuantityRate(quantity) => {
+                self.functional_rates[0] + self.functional(quantity).unwrap_or(self.rows.len())
+            }
             _ => self.observables[1],
         }
     }
@@ -81,7 +86,9 @@ impl Slots {
     pub fn unknown(&self, kind: SymbolKind) -> usize {
         match kind {
             SymbolKind::State(state) => state.0,
-            SymbolKind::Quantity(quantity) => self.states[1] - self.states[0] + self.functional(quantity).unwrap_or(0),
+            SymbolKind::Quantity(quantity) => {
+                self.states[1] - self.states[0] + self.functional(quantity).unwrap_or(0)
+            }
             _ => 0,
         }
     }
@@ -92,7 +99,8 @@ impl Slots {
             let (from, to) = (Literal::usize_unsuffixed(from), Literal::usize_unsuffixed(to));
             quote!([#from, #to])
         };
-        let (time, length) = (Literal::usize_unsuffixed(self.time), Literal::usize_unsuffixed(self.observables[1]));
+        let (time, length) =
+            (Literal::usize_unsuffixed(self.time), Literal::usize_unsuffixed(self.observables[1]));
         let constants = range([self.measures[1], self.time]);
         let [parameters, measures] = [[0, self.parameters], self.measures].map(range);
         let [states, state_rates] = [self.states, self.state_rates].map(range);

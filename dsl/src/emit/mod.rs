@@ -30,7 +30,8 @@ pub use program::Plan;
 /// An internal error if the emitted tokens are no Rust.
 pub fn rust(forms: &mut Forms<'_>, plan: &Plan, sources: &SourceMap) -> Result<String, Box<Diagnostic>> {
     let tokens = program::module(forms, plan, sources);
-    let file: syn::File = syn::parse2(tokens).map_err(|error| internal(Span::default(), &format!("emitted text is no Rust: {error}")))?;
+    let file: syn::File = syn::parse2(tokens)
+        .map_err(|error| internal(Span::default(), &format!("emitted text is no Rust: {error}")))?;
     Ok(prettyplease::unparse(&file).replace(kernel::INVOCATION_AS_PRINTED, kernel::INVOCATION))
 }
 

@@ -16,14 +16,23 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 /// The entries of `Program::functionals`.
-pub fn functionals(forms: &mut Forms<'_>, plan: &Plan, emitted: &mut Emitted, slots: &Slots, sources: &SourceMap) -> TokenStream {
+pub fn functionals(
+    forms: &mut Forms<'_>,
+    plan: &Plan,
+    emitted: &mut Emitted,
+    slots: &Slots,
+    sources: &SourceMap,
+) -> TokenStream {
     let functionals = forms.functionals.clone();
     let entries = functionals.iter().zip(&plan.functionals).map(|(functional, kernels)| {
         let quantity = &forms.lowering.quantities[functional.quantity];
         let (name, unit) = (quantity.name.clone(), forms.lowering.model.units.unit_of(quantity.dimension));
         let kind = match &functional.kind {
             FunctionalKind::Integral(terms) => {
-                let integrals = terms.iter().zip(kernels).map(|(term, kernels)| emitted.integral(&forms.lowering, slots, sources, term, kernels));
+                let integrals = terms
+                    .iter()
+                    .zip(kernels)
+                    .map(|(term, kernels)| emitted.integral(&forms.lowering, slots, sources, term, kernels));
                 let integrals: Vec<TokenStream> = integrals.collect();
                 quote!(FunctionalKind::Integral(&[#(#integrals),*]))
             }
@@ -40,13 +49,23 @@ pub fn functionals(forms: &mut Forms<'_>, plan: &Plan, emitted: &mut Emitted, sl
 }
 
 /// The entries of `Program::observables`.
-pub fn observables(forms: &mut Forms<'_>, plan: &Plan, emitted: &mut Emitted, slots: &Slots, sources: &SourceMap) -> TokenStream {
+pub fn observables(
+    forms: &mut Forms<'_>,
+    plan: &Plan,
+    emitted: &mut Emitted,
+    slots: &Slots,
+    sources: &SourceMap,
+) -> TokenStream {
     let quantities = forms.observables.clone();
     let entries = quantities.iter().zip(&plan.observables).map(|(&quantity, parts)| {
         let quantity = forms.lowering.quantities[quantity].clone();
         let (name, unit) = (&quantity.name, forms.lowering.model.units.unit_of(quantity.dimension));
-        let integrals: Vec<TokenStream> =
-            parts.iter().map(|(term, kernels): &(_, Kernels)| emitted.integral(&forms.lowering, slots, sources, term, kernels)).collect();
+        let integrals: Vec<TokenStream> = parts
+            .iter()
+            .map(|(term, kernels): &(_, Kernels)| {
+                emitted.integral(&forms.lowering, slots, sources, term, kernels)
+            })
+            .collect();
         let kind = observable(&mut forms.lowering, slots, &quantity.kind, &integrals);
         quote!(Observable { name: #name, unit: #unit, kind: #kind })
     });
@@ -54,7 +73,12 @@ pub fn observables(forms: &mut Forms<'_>, plan: &Plan, emitted: &mut Emitted, sl
     quote!(&[#(#entries),*])
 }
 
-fn observable(lowering: &mut Lowering<'_>, slots: &Slots, kind: &QuantityKind, integrals: &[TokenStream]) -> TokenStream {
+fn observable(
+    lowering: &mut Lowering<'_>,
+    slots: &Slots,
+    kind: &QuantityKind,
+    integrals: &[TokenStream],
+) -> TokenStream {
     let model = lowering.model;
     match kind {
         QuantityKind::Integral(_) => quote!(ObservableKind::Integral(&[#(#integrals),*])),
@@ -87,15 +111,21 @@ fn observable(lowering: &mut Lowering<'_>, slots: &Slots, kind: &QuantityKind, i
     }
 }
 
-fn values_at_points(lowering: &mut Lowering<'_>, slots: &Slots, region: &Region, values: &[Id]) -> TokenStream {
+fn values_at_points(
+    lowering: &mut Lowering<'_>,
+    slots: &Slots,
+    region: &Region,
+    values: &[Id],
+) -> TokenStream {
     let form = PointForm::of_values(lowering, region, values);
     point_function(lowering, slots, &form)
 }
 
 /// `|gap, g| value`.
 fn of_gap(lowering: &mut Lowering<'_>, slots: &Slots, value: Id) -> TokenStream {
-    let reads_gap =
-        symbols_of(&lowering.pool, &[value]).into_iter().any(|symbol| matches!(lowering.symbols.kind(symbol), SymbolKind::Gap(_)));
+    let reads_gap = symbols_of(&lowering.pool, &[value])
+        .into_iter()
+        .any(|symbol| matches!(lowering.symbols.kind(symbol), SymbolKind::Gap(_)));
     let body = super::body::body(lowering, slots, super::body::Sources::default(), &[value]);
     let gap = if reads_gap { quote!(gap) } else { quote!(_) };
     let g = if body.reads_globals { quote!(g) } else { quote!(_) };
@@ -106,7 +136,8 @@ fn of_gap(lowering: &mut Lowering<'_>, slots: &Slots, value: Id) -> TokenStream 
 /// The entries of `Program::events`.
 pub fn events(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
     let events = forms.events.clone();
-    let entries: Vec<TokenStream> = events.iter().map(|event| one_event(&mut forms.lowering, slots, event)).collect();
+    let entries: Vec<TokenStream> =
+        events.iter().map(|event| one_event(&mut forms.lowering, slots, event)).collect();
     quote!(&[#(#entries),*])
 }
 
@@ -114,7 +145,8 @@ fn one_event(lowering: &mut Lowering<'_>, slots: &Slots, event: &Event) -> Token
     let (name, doc) = (&event.name, &event.doc);
     let trigger = match &event.trigger {
         Trigger::When { condition, duration, also } => {
-            let [condition, duration, also] = [condition, duration, also].map(|&root| closure(lowering, slots, root));
+            let [condition, duration, also] =
+                [condition, duration, also].map(|&root| closure(lowering, slots, root));
             quote!(Trigger::When { condition: #condition, duration: #duration, also: #also })
         }
         Trigger::Every(When::Step) => quote!(Trigger::EveryStep),
@@ -148,7 +180,8 @@ fn every(lowering: &mut Lowering<'_>, slots: &Slots, when: &When) -> TokenStream
 /// The entries of `Program::tables`.
 pub fn tables(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
     let tables = forms.tables.clone();
-    let entries: Vec<TokenStream> = tables.iter().map(|table| one_table(&mut forms.lowering, slots, table)).collect();
+    let entries: Vec<TokenStream> =
+        tables.iter().map(|table| one_table(&mut forms.lowering, slots, table)).collect();
     quote!(&[#(#entries),*])
 }
 
@@ -166,12 +199,14 @@ fn one_table(lowering: &mut Lowering<'_>, slots: &Slots, table: &Table) -> Token
 /// The entries of `Program::frames`.
 pub fn frames(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
     let frames = forms.frames.clone();
-    let entries: Vec<TokenStream> = frames.iter().map(|frames| one_frames(&mut forms.lowering, slots, frames)).collect();
+    let entries: Vec<TokenStream> =
+        frames.iter().map(|frames| one_frames(&mut forms.lowering, slots, frames)).collect();
     quote!(&[#(#entries),*])
 }
 
 fn one_frames(lowering: &mut Lowering<'_>, slots: &Slots, frames: &Frames) -> TokenStream {
-    let (regions, every) = (region_names(lowering.model, &frames.region), every(lowering, slots, &frames.every));
+    let (regions, every) =
+        (region_names(lowering.model, &frames.region), every(lowering, slots, &frames.every));
     let columns = frames.columns.iter().map(|column| {
         let (name, (value, unit)) = (&column.name, &column.unit);
         let (unit_value, [components, offset]) = (number(*value), [column.components, column.offset].map(Literal::usize_unsuffixed));

@@ -63,13 +63,18 @@ fn entry(forms: &mut Forms<'_>, slots: &Slots, param: &Param, setting: &Paramete
     let unbounded = quote!(|_| (f64::NEG_INFINITY, f64::INFINITY));
     let (range, choices) = match &setting.bounds {
         Bounds::Any => (unbounded, quote!(|_| None)),
-        Bounds::Range(ends) => (list(lowering, slots, ends, &|values| quote!((#(#values),*))), quote!(|_| None)),
-        Bounds::Set(set) => (unbounded, list(lowering, slots, set, &|values| quote!(Some(Vec::from([#(#values),*]))))),
+        Bounds::Range(ends) => {
+            (list(lowering, slots, ends, &|values| quote!((#(#values),*))), quote!(|_| None))
+        }
+        Bounds::Set(set) => {
+            (unbounded, list(lowering, slots, set, &|values| quote!(Some(Vec::from([#(#values),*])))))
+        }
     };
     let (name, doc, (si, unit)) = (&param.name, &param.doc, &param.unit);
     let unit_value = number(lowering.model.units.to_internal(*si, param.dimension));
     let exponents = param.dimension.exponents().iter().map(|exponent| {
-        let (n, d) = (Literal::i32_unsuffixed(exponent.numerator()), Literal::i32_unsuffixed(exponent.denominator()));
+        let (n, d) =
+            (Literal::i32_unsuffixed(exponent.numerator()), Literal::i32_unsuffixed(exponent.denominator()));
         quote!((#n, #d))
     });
     quote!(Parameter {

@@ -30,7 +30,8 @@ impl Plan {
     pub fn new(forms: &mut Forms<'_>, source_hash: String) -> Plan {
         let mut names = UniqueNames::default();
         let terms = forms.terms.clone();
-        let terms = terms.iter().map(|term| kernels(&mut forms.lowering, term, &names.next(&term.name))).collect();
+        let terms =
+            terms.iter().map(|term| kernels(&mut forms.lowering, term, &names.next(&term.name))).collect();
         let functionals = forms.functionals.clone();
         let functionals = functionals.iter().map(|functional| match &functional.kind {
             FunctionalKind::Integral(parts) => {
@@ -58,7 +59,9 @@ impl Plan {
         let all = self.terms.iter().chain(functionals).chain(observables);
         all.flat_map(|kernels| {
             let columns = kernels.columns.as_ref().map(|(_, kernel)| kernel);
-            [kernels.value.as_ref(), kernels.residual.as_ref(), kernels.tangent.as_ref(), columns].into_iter().flatten()
+            [kernels.value.as_ref(), kernels.residual.as_ref(), kernels.tangent.as_ref(), columns]
+                .into_iter()
+                .flatten()
         })
         .collect()
     }
@@ -80,7 +83,10 @@ impl UniqueNames {
 /// The tokens of the module.
 pub fn module(forms: &mut Forms<'_>, plan: &Plan, sources: &SourceMap) -> TokenStream {
     let model = forms.lowering.model;
-    let about = docs(&format!("A simulation of `{}` with these parameters.\n\n# Errors\nIf the geometry cannot be built or meshed.", model.name));
+    let about = docs(&format!(
+        "A simulation of `{}` with these parameters.\n\n# Errors\nIf the geometry cannot be built or meshed.",
+        model.name
+    ));
     let structure = parameters::structure(forms);
     let program = program(forms, plan, sources);
     quote! {
@@ -169,7 +175,9 @@ fn head(forms: &mut Forms<'_>, plan: &Plan, slots: &Slots) -> TokenStream {
     let (name, hash) = (&model.name, &plan.source_hash);
     let doc = model.doc.split("\n\n").next().unwrap_or_default();
     let (scales, units): (Vec<TokenStream>, Vec<String>) = base_dimensions()
-        .map(|dimension| (super::expression::number(model.units.scale(dimension)), model.units.unit_of(dimension)))
+        .map(|dimension| {
+            (super::expression::number(model.units.scale(dimension)), model.units.unit_of(dimension))
+        })
         .into_iter()
         .unzip();
     let axisymmetric = model.coordinates.frame == crate::model::Frame::Axisymmetric;
@@ -222,9 +230,10 @@ impl Forms<'_> {
     fn observed_terms(&mut self, quantity: usize) -> Vec<Term> {
         let of = self.lowering.quantities[quantity].clone();
         match of.kind {
-            QuantityKind::Integral(parts) => parts.into_iter().map(|part| self.plain_term(&of.name, of.span, part)).collect(),
+            QuantityKind::Integral(parts) => {
+                parts.into_iter().map(|part| self.plain_term(&of.name, of.span, part)).collect()
+            }
             _ => Vec::new(),
         }
     }
 }
-

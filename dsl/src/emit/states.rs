@@ -30,7 +30,8 @@ pub fn states(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
 
 /// Derivatives by one state or functional, rates included with alpha.
 fn columns(forms: &mut Forms<'_>, roots: &[Id], unknowns: &[SymbolKind]) -> Vec<Id> {
-    let columns: Vec<Vec<Id>> = unknowns.iter().map(|&kind| forms.derivatives_with_rate(roots, kind)).collect();
+    let columns: Vec<Vec<Id>> =
+        unknowns.iter().map(|&kind| forms.derivatives_with_rate(roots, kind)).collect();
     (0..roots.len()).flat_map(|row| columns.iter().map(move |column| column[row])).collect()
 }
 
@@ -48,10 +49,13 @@ pub fn system(forms: &mut Forms<'_>, slots: &Slots, sources: &SourceMap) -> Toke
         return quote!(None);
     }
     let residuals = forms.states.residuals();
-    let places: Vec<String> = forms.states.equations.iter().map(|equation| place(sources, equation.span)).collect();
-    let differential: Vec<bool> =
-        (0..forms.lowering.model.states.len()).map(|s| forms.states.is_differential(&forms.lowering, StateId(s))).collect();
-    let algebraic: Vec<bool> = residuals.iter().map(|&residual| !has_rates(&forms.lowering, residual)).collect();
+    let places: Vec<String> =
+        forms.states.equations.iter().map(|equation| place(sources, equation.span)).collect();
+    let differential: Vec<bool> = (0..forms.lowering.model.states.len())
+        .map(|s| forms.states.is_differential(&forms.lowering, StateId(s)))
+        .collect();
+    let algebraic: Vec<bool> =
+        residuals.iter().map(|&residual| !has_rates(&forms.lowering, residual)).collect();
     let by_states = columns(forms, &residuals, &state_kinds(forms));
     let by_functionals = columns(forms, &residuals, &functional_kinds(forms));
     let count = Literal::usize_unsuffixed(forms.states.switches.len());
@@ -72,9 +76,9 @@ pub fn system(forms: &mut Forms<'_>, slots: &Slots, sources: &SourceMap) -> Toke
 }
 
 fn has_rates(lowering: &Lowering<'_>, root: Id) -> bool {
-    symbols_of(&lowering.pool, &[root])
-        .into_iter()
-        .any(|symbol| matches!(lowering.symbols.kind(symbol), SymbolKind::StateRate(_) | SymbolKind::QuantityRate(_)))
+    symbols_of(&lowering.pool, &[root]).into_iter().any(|symbol| {
+        matches!(lowering.symbols.kind(symbol), SymbolKind::StateRate(_) | SymbolKind::QuantityRate(_))
+    })
 }
 
 /// `|g, switches, (alpha,) out| ..`.
@@ -88,7 +92,11 @@ fn function(lowering: &mut Lowering<'_>, slots: &Slots, roots: &[Id], has_alpha:
     let switches = name(kinds.iter().any(|kind| matches!(kind, SymbolKind::Switch(_))), quote!(switches));
     let alpha = name(kinds.contains(&SymbolKind::Alpha), quote!(alpha));
     let out = name(!roots.is_empty(), quote!(out));
-    if has_alpha { quote!(|#g, #switches, #alpha, #out| { #code }) } else { quote!(|#g, #switches, #out| { #code }) }
+    if has_alpha {
+        quote!(|#g, #switches, #alpha, #out| { #code })
+    } else {
+        quote!(|#g, #switches, #out| { #code })
+    }
 }
 
 /// `|g, out| out[k] = a < b`.
@@ -97,11 +105,12 @@ fn switches(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
     let roots: Vec<Id> = comparisons.iter().flat_map(|&(_, a, b)| [a, b]).collect();
     let body = body(&mut forms.lowering, slots, Sources::default(), &roots);
     let (statements, g) = (&body.statements, if body.reads_globals { quote!(g) } else { quote!(_) });
-    let truths = comparisons.iter().zip(body.results.chunks(2)).enumerate().map(|(k, ((relation, ..), sides))| {
-        let (k, a, b) = (Literal::usize_unsuffixed(k), &sides[0], &sides[1]);
-        let sign = if *relation == Relation::Less { quote!(<) } else { quote!(<=) };
-        quote!(out[#k] = #a #sign #b;)
-    });
+    let truths =
+        comparisons.iter().zip(body.results.chunks(2)).enumerate().map(|(k, ((relation, ..), sides))| {
+            let (k, a, b) = (Literal::usize_unsuffixed(k), &sides[0], &sides[1]);
+            let sign = if *relation == Relation::Less { quote!(<) } else { quote!(<=) };
+            quote!(out[#k] = #a #sign #b;)
+        });
     let out = if comparisons.is_empty() { quote!(_) } else { quote!(out) };
     quote!(|#g, #out| { #(#statements)* #(#truths)* })
 }
@@ -123,7 +132,9 @@ pub fn couplings(forms: &mut Forms<'_>, slots: &Slots, sources: &SourceMap) -> T
     let unknowns = [state_kinds(forms), functional_kinds(forms)].concat();
     let derivatives = columns(forms, &coefficients, &unknowns);
     let lowering = &mut forms.lowering;
-    let has_alpha = symbols_of(&lowering.pool, &derivatives).into_iter().any(|s| lowering.symbols.kind(s) == SymbolKind::Alpha);
+    let has_alpha = symbols_of(&lowering.pool, &derivatives)
+        .into_iter()
+        .any(|s| lowering.symbols.kind(s) == SymbolKind::Alpha);
     let alpha = if has_alpha { quote!(alpha) } else { quote!(_) };
     let mut written = |roots: &[Id]| {
         let body = body(lowering, slots, Sources::default(), roots);

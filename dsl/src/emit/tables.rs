@@ -58,7 +58,8 @@ impl Tables {
             });
             let (points, nodes) = size(kernel, element);
             let dimension = Literal::usize_unsuffixed(kernel.cell.dimension());
-            let (name, doc) = (ident(&name), format!(" {} reference gradients: `[point][node][direction]`.", element.name));
+            let (name, doc) =
+                (ident(&name), format!(" {} reference gradients: `[point][node][direction]`.", element.name));
             quote!(#[doc = #doc] const #name: [[[f64; #dimension]; #nodes]; #points] = [#(#rows),*];)
         });
         ident(&name)

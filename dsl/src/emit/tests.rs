@@ -15,7 +15,8 @@ use quote::quote;
 /// The entries of `Program::tests`.
 pub fn tests(forms: &mut Forms<'_>, slots: &Slots, sources: &SourceMap) -> TokenStream {
     let tests = forms.tests.clone();
-    let entries: Vec<TokenStream> = tests.iter().map(|test| one_test(&mut forms.lowering, slots, sources, test)).collect();
+    let entries: Vec<TokenStream> =
+        tests.iter().map(|test| one_test(&mut forms.lowering, slots, sources, test)).collect();
     quote!(&[#(#entries),*])
 }
 
@@ -56,7 +57,8 @@ fn run_value(lowering: &mut Lowering<'_>, slots: &Slots, value: &RunValue) -> To
             quote!({ let value: fn(&[f64]) -> f64 = #of; #times record.steps().iter() #filter .map(|g| value(g)).fold(#start, #fold) })
         }
         RunValue::AtTime(of, time) => {
-            let (of, body) = (closure(lowering, slots, *of), body(lowering, slots, Sources::default(), &[*time]));
+            let (of, body) =
+                (closure(lowering, slots, *of), body(lowering, slots, Sources::default(), &[*time]));
             let time = super::body::block(&body);
             quote!({ let value: fn(&[f64]) -> f64 = #of; value(&record.at(#time)) })
         }
@@ -92,7 +94,11 @@ fn one_test(lowering: &mut Lowering<'_>, slots: &Slots, sources: &SourceMap, tes
 }
 
 /// Statements, and `(numbers, holds)`.
-fn expectation_code(lowering: &mut Lowering<'_>, slots: &Slots, expectation: &Expectation) -> (TokenStream, TokenStream) {
+fn expectation_code(
+    lowering: &mut Lowering<'_>,
+    slots: &Slots,
+    expectation: &Expectation,
+) -> (TokenStream, TokenStream) {
     let roots = expectation.roots();
     let body = body(lowering, slots, Sources::default(), &roots);
     let (statements, results) = (&body.statements, &body.results);
@@ -104,7 +110,7 @@ fn expectation_code(lowering: &mut Lowering<'_>, slots: &Slots, expectation: &Ex
         }
         Expectation::Near { percent, .. } => {
             let (value, expected, tolerance) = (&results[0], &results[1], &results[2]);
-            let scale = percent.then(|| quote!(* 0.01 * expected.abs()));
+            let scale = percent.then(|| quote!(*0.01 * expected.abs()));
             let code = quote!(#code let (value, expected): (f64, f64) = (#value, #expected); let tolerance = #tolerance #scale;);
             (code, quote!((Some([value, expected, tolerance]), (value - expected).abs() <= tolerance)))
         }
@@ -112,7 +118,8 @@ fn expectation_code(lowering: &mut Lowering<'_>, slots: &Slots, expectation: &Ex
 }
 
 fn truth(condition: &Condition, roots: &[Id], results: &[TokenStream]) -> TokenStream {
-    let of = |id: &Id| roots.iter().position(|root| root == id).map(|k| results[k].clone()).unwrap_or_default();
+    let of =
+        |id: &Id| roots.iter().position(|root| root == id).map(|k| results[k].clone()).unwrap_or_default();
     match condition {
         Condition::Constant(truth) => quote!(#truth),
         Condition::Compare(relation, a, b) => {

@@ -14,16 +14,20 @@ use ansatz_geometry::{Geometry, GeometryError, LoopPart, PathBuilder, Region, Tu
 pub(super) fn check(forms: &Forms<'_>, parameters: &[f64], sink: &mut Sink) {
     let model = forms.lowering.model;
     let mut errors = Vec::new();
-    let mut geometry = Geometry { axisymmetric: model.coordinates.frame == Frame::Axisymmetric, ..Geometry::default() };
+    let mut geometry =
+        Geometry { axisymmetric: model.coordinates.frame == Frame::Axisymmetric, ..Geometry::default() };
     for (definition, path) in model.geometry.paths.iter().zip(&forms.settings.paths) {
         match build(forms, definition, path, parameters) {
             Ok(path) => geometry.paths.push(path),
             Err(found) => errors.extend(found),
         }
     }
-    geometry.regions = model.geometry.regions.iter().map(|region| {
-        Region::new(&region.name, region.boundary.iter().map(|&piece| part(model, piece)))
-    }).collect();
+    geometry.regions = model
+        .geometry
+        .regions
+        .iter()
+        .map(|region| Region::new(&region.name, region.boundary.iter().map(|&piece| part(model, piece))))
+        .collect();
     if errors.is_empty() {
         errors = geometry.check();
     }
@@ -44,12 +48,13 @@ fn build(
         [values[0], values[1]]
     };
     let mut builder = PathBuilder::from(&definition.name, point(&path.start));
-    for (segment, (to, arc)) in definition.segments.iter().zip(&path.segments) {
+    for (segment, lowered) in definition.segments.iter().zip(&path.segments) {
         let label = segment.label.as_deref();
-        builder = match arc {
-            None => builder.line(label, point(to)),
-            Some((centre, model::Turn::Clockwise)) => builder.arc(label, point(centre), Turn::Cw, point(to)),
-            Some((centre, model::Turn::Counterclockwise)) => builder.arc(label, point(centre), Turn::Ccw, point(to)),
+        let to = point(&lowered.to);
+        builder = match &lowered.arc {
+            None => builder.line(label, to),
+            Some((centre, model::Turn::Clockwise)) => builder.arc(label, point(centre), Turn::Cw, to),
+            Some((centre, model::Turn::Counterclockwise)) => builder.arc(label, point(centre), Turn::Ccw, to),
         };
     }
     builder.build()
@@ -80,9 +85,15 @@ fn code(error: &GeometryError) -> Code {
 fn span(model: &Model, error: &GeometryError) -> Span {
     use GeometryError as E;
     let name: &str = match error {
-        E::EndOffCircle { name, .. } | E::NotFinite { name, .. } | E::ZeroLength { name, .. } | E::NegativeRadius { name, .. } => name,
+        E::EndOffCircle { name, .. }
+        | E::NotFinite { name, .. }
+        | E::ZeroLength { name, .. }
+        | E::NegativeRadius { name, .. } => name,
         E::BrokenPath { path, .. } => path,
-        E::UnknownPart { region, .. } | E::NoAxis { region } | E::NotClosed { region, .. } | E::Branch { region, .. } => region,
+        E::UnknownPart { region, .. }
+        | E::NoAxis { region }
+        | E::NotClosed { region, .. }
+        | E::Branch { region, .. } => region,
         E::Crossing { names, .. } | E::Coincident { names, .. } => &names[0],
         E::Overlap { regions, .. } => &regions[0],
         E::CirclesApart { .. } => "",

@@ -53,18 +53,26 @@ fn find<'m>(expr: &'m Expr, found: &mut Vec<Match<'m>>) {
             arms.iter().for_each(|arm| find(&arm.value, found));
             find(otherwise, found);
         }
-        K::Negate(a) | K::Component(a, _) | K::Component2(a, ..) | K::Rate(a) | K::Frozen(a) => find(a, found),
+        K::Negate(a) | K::Component(a, _) | K::Component2(a, ..) | K::Rate(a) | K::Frozen(a) => {
+            find(a, found)
+        }
         K::Arithmetic(_, a, b) => {
             find(a, found);
             find(b, found);
         }
-        K::Builtin(_, list) | K::Apply(_, list) | K::ApplyLocal(_, list) => list.iter().for_each(|a| find(a, found)),
+        K::Builtin(_, list) | K::Apply(_, list) | K::ApplyLocal(_, list) => {
+            list.iter().for_each(|a| find(a, found))
+        }
         _ => {}
     }
 }
 
 /// Gives the arguments of a function variables, and each variable a size; `None` if one is a law or a record.
-fn bind<'m>(lowering: &mut Lowering<'m>, function: &'m Function, parameters: &[f64]) -> Option<Vec<(Symbol, f64)>> {
+fn bind<'m>(
+    lowering: &mut Lowering<'m>,
+    function: &'m Function,
+    parameters: &[f64],
+) -> Option<Vec<(Symbol, f64)>> {
     let mut sizes = Vec::new();
     for (local, ty) in &function.arguments {
         let Type::Value(shape, dimension) = ty else { return None };
@@ -84,22 +92,35 @@ fn bind<'m>(lowering: &mut Lowering<'m>, function: &'m Function, parameters: &[f
     Some(sizes)
 }
 
-fn check_match<'m>(lowering: &mut Lowering<'m>, parameters: &[f64], sizes: &[(Symbol, f64)], one: Match<'m>, sink: &mut Sink) {
+fn check_match<'m>(
+    lowering: &mut Lowering<'m>,
+    parameters: &[f64],
+    sizes: &[(Symbol, f64)],
+    one: Match<'m>,
+    sink: &mut Sink,
+) {
     let Ok(x) = lowering.global_scalar(one.scrutinee) else { return };
-    let Some(&(solved, size)) = sizes.iter().find(|(symbol, _)| symbols_of(&lowering.pool, &[x]).contains(symbol)) else { return };
+    let Some(&(solved, size)) =
+        sizes.iter().find(|(symbol, _)| symbols_of(&lowering.pool, &[x]).contains(symbol))
+    else {
+        return;
+    };
     let above = one.arms.iter().skip(1).map(|arm| &arm.value).chain([one.otherwise]);
     let mut faults = Vec::new();
     let mut largest = [0.0_f64; 2];
     for (arm, above) in one.arms.iter().zip(above) {
-        let (Ok(bound), Ok(below), Ok(above)) =
-            (lowering.global_scalar(&arm.bound), lowering.global_scalar(&arm.value), lowering.global_scalar(above))
-        else {
+        let (Ok(bound), Ok(below), Ok(above)) = (
+            lowering.global_scalar(&arm.bound),
+            lowering.global_scalar(&arm.value),
+            lowering.global_scalar(above),
+        ) else {
             continue;
         };
         let difference = lowering.pool.sub(x, bound);
         let slope = derive::derivative(&mut lowering.pool, &[difference, below, above], solved);
         for factor in SAMPLES {
-            let mut variables: Vec<(Symbol, f64)> = sizes.iter().map(|&(symbol, size)| (symbol, factor * size)).collect();
+            let mut variables: Vec<(Symbol, f64)> =
+                sizes.iter().map(|&(symbol, size)| (symbol, factor * size)).collect();
             if !solve(lowering, parameters, &mut variables, (solved, size), [difference, slope[0]]) {
                 continue;
             }
@@ -112,11 +133,19 @@ fn check_match<'m>(lowering: &mut Lowering<'m>, parameters: &[f64], sizes: &[(Sy
         }
     }
     let promised = usize::from(one.smoothness == Smoothness::C1);
-    let broken = faults.into_iter().find(|&(_, order, a, b)| order <= promised && (a - b).abs() > TOLERANCE * largest[order]);
+    let broken = faults
+        .into_iter()
+        .find(|&(_, order, a, b)| order <= promised && (a - b).abs() > TOLERANCE * largest[order]);
     if let Some((arm, order, below, above)) = broken {
         let what = if order == 0 { "values" } else { "slopes" };
-        let message = format!("the {what} of the pieces do not meet at this bound: {below:.6e} below, {above:.6e} above");
-        let help = if order == 0 { "write `jumps` behind the `match` if the jump is meant" } else { "leave `C1` out if the kink is meant" };
+        let message = format!(
+            "the {what} of the pieces do not meet at this bound: {below:.6e} below, {above:.6e} above"
+        );
+        let help = if order == 0 {
+            "write `jumps` behind the `match` if the jump is meant"
+        } else {
+            "leave `C1` out if the kink is meant"
+        };
         sink.push(Diagnostic::error(Code::Discontinuous, arm.bound.span, message).help(help));
     }
 }

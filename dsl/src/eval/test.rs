@@ -78,12 +78,15 @@ fn lower_all<'m>(lowering: &mut Lowering<'m>, checks: &'m [Check]) -> Lowered<Ve
                         lowering.global_scalar(to)?,
                         lowering.global_scalar(by)?,
                     ]),
-                    Values::Set(set) => Points::Set(set.iter().map(|value| lowering.global_scalar(value)).collect::<Lowered<_>>()?),
+                    Values::Set(set) => Points::Set(
+                        set.iter().map(|value| lowering.global_scalar(value)).collect::<Lowered<_>>()?,
+                    ),
                 };
                 let variable = lowering.fresh();
                 lowering.set_local(*local, crate::lower::Value::Scalar(variable));
                 let symbol = symbols_of(&lowering.pool, &[variable]).into_iter().next();
-                let symbol = symbol.ok_or_else(|| crate::lower::internal(Span::default(), "a variable without a symbol"))?;
+                let symbol = symbol
+                    .ok_or_else(|| crate::lower::internal(Span::default(), "a variable without a symbol"))?;
                 Ready::Each(symbol, points, lower_all(lowering, body)?)
             }
             Check::Holds(condition, span) => Ready::Holds(lowering.global_condition(condition)?, *span),
@@ -133,14 +136,20 @@ impl Runner<'_, '_> {
                     let (found, wanted) = (self.values(value), self.values(expected));
                     let size = wanted.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
                     let tolerance = self.values(&[*tolerance])[0] * if *percent { 0.01 * size } else { 1.0 };
-                    let at = |values: &[f64], k: usize| values.get(k).or(values.first()).copied().unwrap_or(f64::NAN);
+                    let at = |values: &[f64], k: usize| {
+                        values.get(k).or(values.first()).copied().unwrap_or(f64::NAN)
+                    };
                     let far = (0..found.len().max(wanted.len())).find(|&k| {
                         let distance = (at(&found, k) - at(&wanted, k)).abs();
                         distance.is_nan() || distance > tolerance
                     });
                     outcome.note(*span, far.is_none(), || {
                         let k = far.unwrap_or(0);
-                        format!("found {:e}, expected {:e} within {tolerance:e}", at(&found, k), at(&wanted, k))
+                        format!(
+                            "found {:e}, expected {:e} within {tolerance:e}",
+                            at(&found, k),
+                            at(&wanted, k)
+                        )
                     });
                 }
             }
@@ -153,7 +162,8 @@ impl Runner<'_, '_> {
             Points::Range(ids) => {
                 let [from, to, by] = [0, 1, 2].map(|k| self.values(ids)[k]);
                 let count = ((to - from) / by * (1.0 + 1e-12)).floor();
-                let count = if count.is_finite() && count >= 0.0 { (count as usize).min(MOST_POINTS) + 1 } else { 0 };
+                let count =
+                    if count.is_finite() && count >= 0.0 { (count as usize).min(MOST_POINTS) + 1 } else { 0 };
                 (0..count).map(|k| from + k as f64 * by).collect()
             }
         }
@@ -177,9 +187,20 @@ impl Outcome {
         results.failed += failed;
         let verdict = if failed == 0 { String::from("ok") } else { format!("{failed} FAILED") };
         // Writing to a string cannot fail.
-        let _ = writeln!(results.text, "test \"{}\": {} of {} hold, {verdict}", test.title, self.count - failed, self.count);
+        let _ = writeln!(
+            results.text,
+            "test \"{}\": {} of {} hold, {verdict}",
+            test.title,
+            self.count - failed,
+            self.count
+        );
         for (span, what, times) in self.failures {
-            let _ = writeln!(results.text, "  {} {}: {what} ({times} times)", sources.locate(span), sources.slice(span));
+            let _ = writeln!(
+                results.text,
+                "  {} {}: {what} ({times} times)",
+                sources.locate(span),
+                sources.slice(span)
+            );
             let message = format!("the expectation fails: {what}");
             sink.push(Diagnostic::warning(Code::Failed, span, message).label(test.span, "in this test"));
         }

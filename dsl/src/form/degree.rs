@@ -24,7 +24,8 @@ pub(super) fn quadrature_degree(
     if matches!(region, Region::Edges(_)) {
         return EDGE_DEGREE;
     }
-    let of = |root| degree(&lowering.pool, root, &|symbol| symbol_degree(lowering, lowering.symbols.kind(symbol)));
+    let of =
+        |root| degree(&lowering.pool, root, &|symbol| symbol_degree(lowering, lowering.symbols.kind(symbol)));
     let works = flux.iter().zip(tests).map(|(&flux, &test)| of(flux) + input_degree(lowering, test));
     let integrand = if tests.is_empty() { value.map_or(0, of) } else { works.max().unwrap_or(0) };
     let weight = u32::from(lowering.model.coordinates.frame == Frame::Axisymmetric);
@@ -60,7 +61,9 @@ fn input_degree(lowering: &Lowering<'_>, input: FieldInput) -> u32 {
 
 fn symbol_degree(lowering: &Lowering<'_>, kind: SymbolKind) -> u32 {
     match kind {
-        SymbolKind::Field(input) | SymbolKind::FieldRate(input) | SymbolKind::Frozen(input) => input_degree(lowering, input),
+        SymbolKind::Field(input) | SymbolKind::FieldRate(input) | SymbolKind::Frozen(input) => {
+            input_degree(lowering, input)
+        }
         SymbolKind::Coordinate(_) => 1,
         _ => 0,
     }

@@ -46,7 +46,11 @@ impl Event {
             Trigger::Every(When::Time(time)) => vec![*time],
             Trigger::Every(When::Step) => Vec::new(),
         };
-        roots.extend(self.actions.iter().filter_map(|action| if let Action::Set(_, value) = action { Some(*value) } else { None }));
+        roots.extend(
+            self.actions
+                .iter()
+                .filter_map(|action| if let Action::Set(_, value) = action { Some(*value) } else { None }),
+        );
         roots
     }
 }
@@ -55,7 +59,10 @@ impl<'m> Builder<'m> {
     /// Lowers all events.
     pub(super) fn events(&mut self, rows: &[usize]) -> Vec<Event> {
         let events = &self.lowering.model.events;
-        events.iter().filter_map(|event| self.attempt(|lowering| lower_event(lowering, rows, event))).collect()
+        events
+            .iter()
+            .filter_map(|event| self.attempt(|lowering| lower_event(lowering, rows, event)))
+            .collect()
     }
 }
 
@@ -112,9 +119,9 @@ fn margin<'m>(lowering: &mut Lowering<'m>, rows: &[usize], conditions: &[&'m Exp
     let mut all: Option<Id> = None;
     for expr in conditions {
         let condition: Condition = lowering.global_condition(expr)?;
-        let margin = condition
-            .margin(&mut lowering.pool)
-            .ok_or_else(|| unsupported(expr.span, "an event cannot wait for an equality; compare with `<` or `>`"))?;
+        let margin = condition.margin(&mut lowering.pool).ok_or_else(|| {
+            unsupported(expr.span, "an event cannot wait for an equality; compare with `<` or `>`")
+        })?;
         let margin = observed(lowering, rows, margin)?;
         all = Some(all.map_or(margin, |all| lowering.pool.min(all, margin)));
     }

@@ -70,7 +70,8 @@ fn lower_test<'m>(lowering: &mut Lowering<'m>, test: &'m model::Test) -> Lowered
             Check::Near { value, expected, tolerance, percent, span } => {
                 let (value, expected) = (lowering.global_scalar(value)?, lowering.global_scalar(expected)?);
                 let tolerance = lowering.global_scalar(tolerance)?;
-                expectations.push((*span, Expectation::Near { value, expected, tolerance, percent: *percent }));
+                expectations
+                    .push((*span, Expectation::Near { value, expected, tolerance, percent: *percent }));
             }
         }
     }
@@ -81,7 +82,9 @@ fn lower_test<'m>(lowering: &mut Lowering<'m>, test: &'m model::Test) -> Lowered
 fn observe_run_values(lowering: &mut Lowering<'_>, rows: &[usize]) -> Lowered<()> {
     for k in 0..lowering.run_values.len() {
         let observed = match lowering.run_values[k].clone() {
-            RunValue::Extreme(reduction, of, range) => RunValue::Extreme(reduction, observed(lowering, rows, of)?, range),
+            RunValue::Extreme(reduction, of, range) => {
+                RunValue::Extreme(reduction, observed(lowering, rows, of)?, range)
+            }
             RunValue::AtTime(of, time) => RunValue::AtTime(observed(lowering, rows, of)?, time),
             RunValue::AtEvent(of, event) => RunValue::AtEvent(observed(lowering, rows, of)?, event),
             fired @ RunValue::Fired(_) => fired,

@@ -1,12 +1,12 @@
 //! Stage 5 of 6: from statements to what is assembled. Input: the model, lowered expression by expression. Output: [`Forms`]: integrals
 //! with fluxes and tangents, equations of states, functionals, observables, outputs, all in point or global symbols. Knows no element.
 //!
-//! - [`vary`]: the rule of variation; every energy, load and weak form becomes a [`Term`].
-//! - [`physics`]: the statements of the blocks.
-//! - [`states`]: equations of states.
-//! - [`observe`]: which scalars are rows of the system (functionals) and which are only looked at (observables).
-//! - [`settings`]: what depends on parameters alone.
-//! - [`output`], [`event`], [`expect`]: tables, frames, events, run-time tests.
+//! - `vary`: the rule of variation; every energy, load and weak form becomes a [`Term`].
+//! - `physics`: the statements of the blocks.
+//! - `states`: equations of states.
+//! - `observe`: which scalars are rows of the system (functionals) and which are only looked at (observables).
+//! - `settings`: what depends on parameters alone.
+//! - `output`, `event`, `expect`: tables, frames, events, run-time tests.
 
 mod degree;
 mod event;

@@ -39,7 +39,9 @@ impl<'m> Builder<'m> {
         roots.extend(physics.terms.iter().flat_map(|term| term.flux.iter().copied().chain(term.value)));
         let mut rows = quantities_in(&self.lowering, &roots);
         rows.extend(physics.couplings.iter().map(|coupling| coupling.quantity));
-        rows.into_iter().filter_map(|quantity| self.attempt(|lowering| functional(lowering, quantity))).collect()
+        rows.into_iter()
+            .filter_map(|quantity| self.attempt(|lowering| functional(lowering, quantity)))
+            .collect()
     }
 
     /// Quantities under the roots that are no functionals, with those that they read themselves, ascending: a quantity has a higher number
@@ -61,10 +63,11 @@ impl<'m> Builder<'m> {
 pub(super) fn observed(lowering: &mut Lowering<'_>, rows: &[usize], root: Id) -> Lowered<Id> {
     let mut images = Vec::new();
     for symbol in symbols_of(&lowering.pool, &[root]) {
-        if let SymbolKind::QuantityRate(quantity) = lowering.symbols.kind(symbol) {
-            if !rows.contains(&quantity) {
+        match lowering.symbols.kind(symbol) {
+            SymbolKind::QuantityRate(quantity) if !rows.contains(&quantity) => {
                 images.push((symbol, rate_of_quantity(lowering, quantity)?));
             }
+            _ => {}
         }
     }
     let image = |symbol| images.iter().find(|(s, _)| *s == symbol).map(|(_, id)| *id);
@@ -82,10 +85,16 @@ fn rate_of_quantity(lowering: &mut Lowering<'_>, quantity: usize) -> Lowered<Id>
             QuantityKind::Integral(rated?)
         }
         QuantityKind::Point(at, region, values) => {
-            let rated: Lowered<Vec<Id>> = values.into_iter().map(|value| lowering.rate_of_scalar(value, of.span)).collect();
+            let rated: Lowered<Vec<Id>> =
+                values.into_iter().map(|value| lowering.rate_of_scalar(value, of.span)).collect();
             QuantityKind::Point(at, region, rated?)
         }
-        _ => return Err(unsupported(of.span, "the rate of an extreme value or of a resultant is not supported")),
+        _ => {
+            return Err(unsupported(
+                of.span,
+                "the rate of an extreme value or of a resultant is not supported",
+            ));
+        }
     };
     lowering.name_after(&format!("dt_{}", of.name));
     Ok(lowering.share_quantity(kind, of.dimension, of.span))
@@ -97,10 +106,16 @@ fn functional(lowering: &mut Lowering<'_>, quantity: usize) -> Lowered<Functiona
         use SymbolKind as K;
         match lowering.symbols.kind(symbol) {
             K::FieldRate(_) => {
-                return Err(unsupported(of.span, "an equation reads this; write the rate outside: `dt(mean(..))`"));
+                return Err(unsupported(
+                    of.span,
+                    "an equation reads this; write the rate outside: `dt(mean(..))`",
+                ));
             }
             K::State(_) | K::StateRate(_) | K::Quantity(_) | K::QuantityRate(_) | K::Time => {
-                return Err(unsupported(of.span, "an equation reads this, so it may depend on fields and parameters only"));
+                return Err(unsupported(
+                    of.span,
+                    "an equation reads this, so it may depend on fields and parameters only",
+                ));
             }
             _ => {}
         }
@@ -118,7 +133,8 @@ fn functional(lowering: &mut Lowering<'_>, quantity: usize) -> Lowered<Functiona
             FunctionalKind::Integral(terms)
         }
         QuantityKind::Point(at, region, values) => {
-            let form = PointForm::new(lowering, &region, values.into_iter().map(|value| vec![value]).collect());
+            let form =
+                PointForm::new(lowering, &region, values.into_iter().map(|value| vec![value]).collect());
             FunctionalKind::Point(at, form.with_derivatives(lowering))
         }
         QuantityKind::Extreme(..) | QuantityKind::PairExtreme(..) | QuantityKind::Force(..) => {

@@ -1,7 +1,7 @@
 //! Tables, frames and functions at points.
 
-use super::observe::observed;
 use super::Builder;
+use super::observe::observed;
 use crate::derive;
 use crate::lower::{FieldInput, Lowered, Lowering, Region, SymbolKind, unsupported};
 use crate::model::{Every, FieldId, Shape, Start, Type};
@@ -137,15 +137,25 @@ impl<'m> Builder<'m> {
     /// Tables and frames.
     pub(super) fn outputs(&mut self, rows: &[usize]) -> (Vec<Table>, Vec<Frames>) {
         let output = &self.lowering.model.output;
-        let tables = output.tables.iter().filter_map(|table| self.attempt(|lowering| lower_table(lowering, rows, table))).collect();
-        let frames = output.frames.iter().filter_map(|frames| self.attempt(|lowering| lower_frames(lowering, rows, frames))).collect();
+        let tables = output
+            .tables
+            .iter()
+            .filter_map(|table| self.attempt(|lowering| lower_table(lowering, rows, table)))
+            .collect();
+        let frames = output
+            .frames
+            .iter()
+            .filter_map(|frames| self.attempt(|lowering| lower_frames(lowering, rows, frames)))
+            .collect();
         (tables, frames)
     }
 
     /// Start of each stored component of each field.
     pub(super) fn starts(&mut self) -> Vec<Vec<Id>> {
         let fields = 0..self.lowering.model.fields.len();
-        fields.map(|f| self.attempt(|lowering| field_start(lowering, FieldId(f))).unwrap_or_default()).collect()
+        fields
+            .map(|f| self.attempt(|lowering| field_start(lowering, FieldId(f))).unwrap_or_default())
+            .collect()
     }
 
     /// Displacement field of each pair.
@@ -169,7 +179,11 @@ pub(super) fn lower_when<'m>(lowering: &mut Lowering<'m>, every: &'m Every) -> L
     })
 }
 
-fn lower_table<'m>(lowering: &mut Lowering<'m>, rows: &[usize], table: &'m crate::model::Table) -> Lowered<Table> {
+fn lower_table<'m>(
+    lowering: &mut Lowering<'m>,
+    rows: &[usize],
+    table: &'m crate::model::Table,
+) -> Lowered<Table> {
     let mut columns = Vec::new();
     for column in &table.columns {
         lowering.name_after(&column.name);
@@ -182,11 +196,16 @@ fn lower_table<'m>(lowering: &mut Lowering<'m>, rows: &[usize], table: &'m crate
 
 /// Value of a column's display unit in the model's units, and its text.
 fn display_unit(lowering: &Lowering<'_>, column: &crate::model::Column) -> (f64, String) {
-    let dimension = if let Type::Value(_, dimension) = column.value.ty { dimension } else { Dimension::NUMBER };
+    let dimension =
+        if let Type::Value(_, dimension) = column.value.ty { dimension } else { Dimension::NUMBER };
     (lowering.model.units.to_internal(column.unit.0, dimension), column.unit.1.clone())
 }
 
-fn lower_frames<'m>(lowering: &mut Lowering<'m>, rows: &[usize], frames: &'m crate::model::Frames) -> Lowered<Frames> {
+fn lower_frames<'m>(
+    lowering: &mut Lowering<'m>,
+    rows: &[usize],
+    frames: &'m crate::model::Frames,
+) -> Lowered<Frames> {
     let span = frames.domain.span;
     let region = match Region::of(&frames.domain) {
         Some(region @ Region::Cells(_)) => region,
@@ -208,7 +227,12 @@ fn lower_frames<'m>(lowering: &mut Lowering<'m>, rows: &[usize], frames: &'m cra
     let sizes = parts[0].1.iter().map(Vec::len);
     let columns = frames.columns.iter().zip(sizes).map(|(column, components)| {
         offset += components;
-        FrameColumn { name: column.name.clone(), unit: display_unit(lowering, column), components, offset: offset - components }
+        FrameColumn {
+            name: column.name.clone(),
+            unit: display_unit(lowering, column),
+            components,
+            offset: offset - components,
+        }
     });
     let columns = columns.collect();
     let outputs = parts.into_iter().map(|(_, columns)| columns.concat()).collect();
@@ -227,7 +251,8 @@ fn field_start(lowering: &mut Lowering<'_>, field: FieldId) -> Lowered<Vec<Id>> 
         return Ok(vec![lowering.pool.zero(); stored.len()]);
     };
     let span = value.span;
-    let region = Region::of(&definition.domain).ok_or_else(|| unsupported(definition.span, "a field lives on regions"))?;
+    let region = Region::of(&definition.domain)
+        .ok_or_else(|| unsupported(definition.span, "a field lives on regions"))?;
     let parts = lowering.on_parts(&region, |lowering| lowering.components_here(value))?;
     let components = match parts.as_slice() {
         [(_, components)] if components.iter().all(|&c| same_everywhere(lowering, c)) => components.clone(),
@@ -238,6 +263,9 @@ fn field_start(lowering: &mut Lowering<'_>, field: FieldId) -> Lowered<Vec<Id>> 
 
 fn same_everywhere(lowering: &Lowering<'_>, root: Id) -> bool {
     symbols_of(&lowering.pool, &[root]).into_iter().all(|symbol| {
-        matches!(lowering.symbols.kind(symbol), SymbolKind::Parameter(_) | SymbolKind::Measure(_) | SymbolKind::Coordinate(_))
+        matches!(
+            lowering.symbols.kind(symbol),
+            SymbolKind::Parameter(_) | SymbolKind::Measure(_) | SymbolKind::Coordinate(_)
+        )
     })
 }

@@ -34,7 +34,12 @@ impl<'m> Builder<'m> {
 }
 
 impl Physics {
-    fn statement<'m>(&mut self, lowering: &mut Lowering<'m>, block: BlockId, statement: &'m Statement) -> Lowered<()> {
+    fn statement<'m>(
+        &mut self,
+        lowering: &mut Lowering<'m>,
+        block: BlockId,
+        statement: &'m Statement,
+    ) -> Lowered<()> {
         let span = statement.span;
         match &statement.kind {
             StatementKind::Energy(density, Some(domain)) => match domain.pieces.as_slice() {
@@ -53,7 +58,12 @@ impl Physics {
             StatementKind::Energy(energy, None) => {
                 let energy = lowering.global_scalar(energy)?;
                 let slopes = quantity_slopes(lowering, &[energy]);
-                self.couplings.extend(slopes.into_iter().map(|(quantity, slopes)| Coupling { block, quantity, coefficient: slopes[0], span }));
+                self.couplings.extend(slopes.into_iter().map(|(quantity, slopes)| Coupling {
+                    block,
+                    quantity,
+                    coefficient: slopes[0],
+                    span,
+                }));
                 Ok(())
             }
             StatementKind::Residual(residual, domain) => {
@@ -62,12 +72,16 @@ impl Physics {
                     Ok(Variation::of_residual(lowering, residual))
                 })
             }
-            StatementKind::Load(of, with, Some(domain)) => self.integral(lowering, (block, "load", span), domain, |lowering| {
-                let (of, with) = (lowering.components_here(of)?, lowering.components_here(with)?);
-                Ok(Variation::of_load(lowering, &of, &with))
-            }),
+            StatementKind::Load(of, with, Some(domain)) => {
+                self.integral(lowering, (block, "load", span), domain, |lowering| {
+                    let (of, with) = (lowering.components_here(of)?, lowering.components_here(with)?);
+                    Ok(Variation::of_load(lowering, &of, &with))
+                })
+            }
             StatementKind::Load(of, with, None) => self.lumped_load(lowering, block, of, with, span),
-            StatementKind::Hold(field, component, value, domain) => self.hold(lowering, *field, *component, value, domain, span),
+            StatementKind::Hold(field, component, value, domain) => {
+                self.hold(lowering, *field, *component, value, domain, span)
+            }
             StatementKind::Equation(left, right) => {
                 let (left_id, right_id) = (lowering.global_scalar(left)?, lowering.global_scalar(right)?);
                 self.differences.push((lowering.pool.sub(left_id, right_id), span));
@@ -84,8 +98,9 @@ impl Physics {
         domain: &Domain,
         vary: impl FnMut(&mut Lowering<'m>) -> Lowered<Variation>,
     ) -> Lowered<()> {
-        let region = Region::of(domain)
-            .ok_or_else(|| unsupported(domain.span, "only an energy of the gap can stand on a contact pair"))?;
+        let region = Region::of(domain).ok_or_else(|| {
+            unsupported(domain.span, "only an energy of the gap can stand on a contact pair")
+        })?;
         for (region, variation) in lowering.on_parts(&region, vary)? {
             if variation.is_zero() {
                 continue;
@@ -100,7 +115,14 @@ impl Physics {
         Ok(())
     }
 
-    fn lumped_load<'m>(&mut self, lowering: &mut Lowering<'m>, block: BlockId, of: &'m Expr, with: &'m Expr, span: Span) -> Lowered<()> {
+    fn lumped_load<'m>(
+        &mut self,
+        lowering: &mut Lowering<'m>,
+        block: BlockId,
+        of: &'m Expr,
+        with: &'m Expr,
+        span: Span,
+    ) -> Lowered<()> {
         let (of, with) = (lowering.global(of)?, lowering.global(with)?);
         let (of, with) = (of.components(&mut lowering.pool), with.components(&mut lowering.pool));
         for (quantity, slopes) in quantity_slopes(lowering, &of) {
@@ -134,8 +156,14 @@ impl Physics {
                     (_, [one]) => *one,
                     (_, many) => many[axis],
                 };
-                if symbols_of(&lowering.pool, &[value]).iter().any(|&s| follows_fields(lowering.symbols.kind(s))) {
-                    return Err(unsupported(span, "a held value cannot depend on fields or on means of fields"));
+                if symbols_of(&lowering.pool, &[value])
+                    .iter()
+                    .any(|&s| follows_fields(lowering.symbols.kind(s)))
+                {
+                    return Err(unsupported(
+                        span,
+                        "a held value cannot depend on fields or on means of fields",
+                    ));
                 }
                 self.holds.push(Hold { field, component: stored, region: region.clone(), value, span });
             }
@@ -147,17 +175,36 @@ impl Physics {
 /// Whether a symbol changes with the unknowns of the mesh.
 fn follows_fields(kind: SymbolKind) -> bool {
     use SymbolKind as K;
-    matches!(kind, K::Field(_) | K::FieldRate(_) | K::Frozen(_) | K::Quantity(_) | K::QuantityRate(_) | K::Gap(_) | K::Table(_))
+    matches!(
+        kind,
+        K::Field(_)
+            | K::FieldRate(_)
+            | K::Frozen(_)
+            | K::Quantity(_)
+            | K::QuantityRate(_)
+            | K::Gap(_)
+            | K::Table(_)
+    )
 }
 
 /// The energy of a gap with its derivatives.
-fn gap_law<'m>(lowering: &mut Lowering<'m>, density: &'m Expr, pair: crate::model::PairId) -> Lowered<[Id; 3]> {
+fn gap_law<'m>(
+    lowering: &mut Lowering<'m>,
+    density: &'m Expr,
+    pair: crate::model::PairId,
+) -> Lowered<[Id; 3]> {
     let energy = lowering.scalar_on_pair(density, pair)?;
     let gap = lowering.symbols.symbol(SymbolKind::Gap(pair));
     for symbol in symbols_of(&lowering.pool, &[energy]) {
         use SymbolKind as K;
-        if matches!(lowering.symbols.kind(symbol), K::State(_) | K::StateRate(_) | K::Quantity(_) | K::QuantityRate(_)) {
-            return Err(unsupported(density.span, "an energy of the gap cannot depend on states or functionals"));
+        if matches!(
+            lowering.symbols.kind(symbol),
+            K::State(_) | K::StateRate(_) | K::Quantity(_) | K::QuantityRate(_)
+        ) {
+            return Err(unsupported(
+                density.span,
+                "an energy of the gap cannot depend on states or functionals",
+            ));
         }
     }
     let force = derive::derivative(&mut lowering.pool, &[energy], gap)[0];
@@ -179,7 +226,8 @@ fn quantity_slopes(lowering: &mut Lowering<'_>, roots: &[Id]) -> Vec<(usize, Vec
     quantities
         .into_iter()
         .map(|k| {
-            let symbols = [SymbolKind::Quantity(k), SymbolKind::QuantityRate(k)].map(|kind| lowering.symbols.symbol(kind));
+            let symbols = [SymbolKind::Quantity(k), SymbolKind::QuantityRate(k)]
+                .map(|kind| lowering.symbols.symbol(kind));
             let one = lowering.pool.one();
             let rates: Vec<_> = symbols.into_iter().map(|symbol| (symbol, one)).collect();
             (k, derive::tangent(&mut lowering.pool, roots, &rates))
@@ -189,7 +237,8 @@ fn quantity_slopes(lowering: &mut Lowering<'_>, roots: &[Id]) -> Vec<(usize, Vec
 
 /// Refuses what kernels cannot do.
 pub(super) fn check(lowering: &Lowering<'_>, term: &Term) -> Lowered<()> {
-    let symbols = symbols_of(&lowering.pool, &term.flux.iter().copied().chain(term.value).collect::<Vec<_>>());
+    let symbols =
+        symbols_of(&lowering.pool, &term.flux.iter().copied().chain(term.value).collect::<Vec<_>>());
     let kinds: Vec<SymbolKind> = symbols.into_iter().map(|symbol| lowering.symbols.kind(symbol)).collect();
     let gradient = |kind: &SymbolKind| match kind {
         SymbolKind::Field(input) | SymbolKind::FieldRate(input) => input.derivative.is_some(),
@@ -197,11 +246,19 @@ pub(super) fn check(lowering: &Lowering<'_>, term: &Term) -> Lowered<()> {
     };
     let on_edges = matches!(term.region, Region::Edges(_));
     if on_edges && (kinds.iter().any(gradient) || term.tests.iter().any(|test| test.derivative.is_some())) {
-        return Err(unsupported(term.span, "gradients on edges are not supported yet; only values and rates of fields are"));
+        return Err(unsupported(
+            term.span,
+            "gradients on edges are not supported yet; only values and rates of fields are",
+        ));
     }
-    let energy_of_quantity = term.block.is_some() && term.value.is_some() && kinds.iter().any(|kind| matches!(kind, SymbolKind::Quantity(_)));
+    let energy_of_quantity = term.block.is_some()
+        && term.value.is_some()
+        && kinds.iter().any(|kind| matches!(kind, SymbolKind::Quantity(_)));
     if energy_of_quantity {
-        return Err(unsupported(term.span, "an energy density cannot contain a mean or an integral; use a `load`, or `frozen`"));
+        return Err(unsupported(
+            term.span,
+            "an energy density cannot contain a mean or an integral; use a `load`, or `frozen`",
+        ));
     }
     Ok(())
 }

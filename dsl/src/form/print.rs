@@ -42,7 +42,8 @@ pub fn forms(forms: &Forms<'_>, sources: &SourceMap) -> String {
             }
         }
     }
-    let observables: Vec<&str> = forms.observables.iter().map(|&q| lowering.quantities[q].name.as_str()).collect();
+    let observables: Vec<&str> =
+        forms.observables.iter().map(|&q| lowering.quantities[q].name.as_str()).collect();
     let _ = writeln!(text, "observables: {}", observables.join(", "));
     text
 }
@@ -56,7 +57,8 @@ fn heading(lowering: &Lowering<'_>, sources: &SourceMap, term: &Term) -> String 
 fn term_roots(lowering: &Lowering<'_>, term: &Term) -> Vec<(String, Id)> {
     let name = |input| input_name(lowering.model, input);
     let value = term.value.map(|value| (String::from("value"), value));
-    let flux = term.tests.iter().zip(&term.flux).map(|(test, flux)| (format!("flux[{}]", name(*test)), *flux));
+    let flux =
+        term.tests.iter().zip(&term.flux).map(|(test, flux)| (format!("flux[{}]", name(*test)), *flux));
     value.into_iter().chain(flux).collect()
 }
 
@@ -66,6 +68,7 @@ fn formulas(lowering: &Lowering<'_>, roots: &[(String, Id)]) -> String {
     let ids = lower_powers(&mut pool, &ids);
     let schedule = Schedule::new(&pool, &ids, &|_| 0);
     let roots: Vec<(String, Id)> = roots.iter().map(|(label, _)| label.clone()).zip(ids).collect();
-    let text = listing(&pool, &roots, &schedule, &|symbol| symbol_name(lowering, lowering.symbols.kind(symbol)));
+    let text =
+        listing(&pool, &roots, &schedule, &|symbol| symbol_name(lowering, lowering.symbols.kind(symbol)));
     text.lines().map(|line| format!("  {line}\n")).collect()
 }

@@ -35,12 +35,21 @@ pub struct State {
     pub bounds: Option<[Id; 2]>,
 }
 
-/// A path of the geometry: its start and, for each segment, the end and the centre and turn of an arc.
+/// A path of the geometry.
 #[derive(Clone, Debug)]
 #[allow(missing_docs)]
 pub struct Path {
     pub start: [Id; 2],
-    pub segments: Vec<([Id; 2], Option<([Id; 2], Turn)>)>,
+    pub segments: Vec<Segment>,
+}
+
+/// A piece of a path.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Segment {
+    pub to: [Id; 2],
+    /// Centre and sense of an arc; `None` for a line.
+    pub arc: Option<([Id; 2], Turn)>,
 }
 
 /// Mesh sizes.
@@ -93,8 +102,13 @@ impl<'m> Builder<'m> {
     }
 
     /// Lowers each of a list, so that every problem is found; `None` if there is one.
-    fn all<S, T>(&mut self, list: &'m [S], lower: impl Fn(&mut Lowering<'m>, &'m S) -> Lowered<T>) -> Option<Vec<T>> {
-        let lowered: Vec<Option<T>> = list.iter().map(|one| self.attempt(|lowering| lower(lowering, one))).collect();
+    fn all<S, T>(
+        &mut self,
+        list: &'m [S],
+        lower: impl Fn(&mut Lowering<'m>, &'m S) -> Lowered<T>,
+    ) -> Option<Vec<T>> {
+        let lowered: Vec<Option<T>> =
+            list.iter().map(|one| self.attempt(|lowering| lower(lowering, one))).collect();
         lowered.into_iter().collect()
     }
 }
@@ -103,7 +117,9 @@ fn parameter<'m>(lowering: &mut Lowering<'m>, param: &'m model::Param) -> Lowere
     let default = lowering.global_scalar(&param.default)?;
     let bounds = match &param.bounds {
         None => Bounds::Any,
-        Some(model::Bounds::Range(low, high)) => Bounds::Range([lowering.global_scalar(low)?, lowering.global_scalar(high)?]),
+        Some(model::Bounds::Range(low, high)) => {
+            Bounds::Range([lowering.global_scalar(low)?, lowering.global_scalar(high)?])
+        }
         Some(model::Bounds::Set(values)) => {
             let values: Lowered<Vec<Id>> = values.iter().map(|value| lowering.global_scalar(value)).collect();
             Bounds::Set(values?)
@@ -146,7 +162,7 @@ fn path<'m>(lowering: &mut Lowering<'m>, path: &'m model::Path) -> Lowered<Path>
             SegmentKind::Line => None,
             SegmentKind::Arc { about, turn } => Some((point(lowering, about)?, *turn)),
         };
-        segments.push((point(lowering, &segment.to)?, arc));
+        segments.push(Segment { to: point(lowering, &segment.to)?, arc });
     }
     Ok(Path { start, segments })
 }

@@ -68,8 +68,12 @@ fn held(lowering: &mut Lowering<'_>, root: Id, switches: &mut Vec<(Relation, Id,
                 choose(lowering, switches, (Relation::LessEqual, zero, x), y, negative)
             }
             Node::Unary(op, x) => lowering.pool.unary(op, at(x)),
-            Node::Binary(Binary::Min, x, y) => choose(lowering, switches, (Relation::LessEqual, x, y), at(x), at(y)),
-            Node::Binary(Binary::Max, x, y) => choose(lowering, switches, (Relation::LessEqual, y, x), at(x), at(y)),
+            Node::Binary(Binary::Min, x, y) => {
+                choose(lowering, switches, (Relation::LessEqual, x, y), at(x), at(y))
+            }
+            Node::Binary(Binary::Max, x, y) => {
+                choose(lowering, switches, (Relation::LessEqual, y, x), at(x), at(y))
+            }
             Node::Binary(op, x, y) => lowering.pool.binary(op, at(x), at(y)),
             Node::Power(x, p) => lowering.pool.power(at(x), p),
             Node::Select { relation, lhs, rhs, then, otherwise } => {
@@ -101,7 +105,9 @@ fn choose(
 /// run, with the default parameters, at the start of the states. 1 if that is no positive number.
 fn characteristic_size(lowering: &mut Lowering<'_>, difference: Id) -> f64 {
     let values = Typical::new(lowering);
-    let states = global_unknowns(lowering, &[difference]).into_iter().filter(|kind| matches!(kind, SymbolKind::State(_)));
+    let states = global_unknowns(lowering, &[difference])
+        .into_iter()
+        .filter(|kind| matches!(kind, SymbolKind::State(_)));
     let kinds: Vec<SymbolKind> = states.flat_map(|kind| [kind, rate_of(kind)]).collect();
     let symbols: Vec<Symbol> = kinds.iter().map(|&kind| lowering.symbols.symbol(kind)).collect();
     let slopes = derive::gradient(&mut lowering.pool, difference, &symbols);
@@ -126,7 +132,8 @@ struct Typical {
 impl Typical {
     fn new(lowering: &mut Lowering<'_>) -> Typical {
         let (parameters, model) = (defaults(lowering), lowering.model);
-        let mut typical = Typical { parameters, starts: Vec::new(), sizes: Vec::new(), duration: f64::INFINITY };
+        let mut typical =
+            Typical { parameters, starts: Vec::new(), sizes: Vec::new(), duration: f64::INFINITY };
         for state in &model.states {
             let (low, high) = match &state.bounds {
                 Some((low, high)) => (typical.number(lowering, low), typical.number(lowering, high)),
@@ -138,7 +145,11 @@ impl Typical {
             };
             typical.starts.push(if start.is_finite() { start } else { 0.0 });
             let width = (high - low).abs();
-            typical.sizes.push(if width.is_finite() { width } else { size_of_kind(model, state.dimension, &typical.parameters) });
+            typical.sizes.push(if width.is_finite() {
+                width
+            } else {
+                size_of_kind(model, state.dimension, &typical.parameters)
+            });
         }
         if let Some((from, to)) = &model.solve.time {
             typical.duration = typical.number(lowering, to) - typical.number(lowering, from);

@@ -62,9 +62,9 @@ impl Variation {
             _ => None,
         });
         let flux = derive::gradient(&mut lowering.pool, density, &symbols);
-        let is_gradient = !symbols_of(&lowering.pool, &[density])
-            .into_iter()
-            .any(|symbol| matches!(lowering.symbols.kind(symbol), SymbolKind::Frozen(_) | SymbolKind::FieldRate(_)));
+        let is_gradient = !symbols_of(&lowering.pool, &[density]).into_iter().any(|symbol| {
+            matches!(lowering.symbols.kind(symbol), SymbolKind::Frozen(_) | SymbolKind::FieldRate(_))
+        });
         Variation { value: Some(density), is_gradient, tests, flux }.cleaned(lowering)
     }
 
@@ -135,7 +135,12 @@ pub(super) struct Origin {
 }
 
 /// Differentiates a variation by fields, states and quantities.
-pub(super) fn linearise(lowering: &mut Lowering<'_>, origin: Origin, region: Region, variation: Variation) -> Term {
+pub(super) fn linearise(
+    lowering: &mut Lowering<'_>,
+    origin: Origin,
+    region: Region,
+    variation: Variation,
+) -> Term {
     let Variation { value, is_gradient, tests, flux } = variation;
     let (trials, tangent) = match value.filter(|_| is_gradient) {
         Some(value) => hessian(lowering, value, &tests),
@@ -161,7 +166,8 @@ pub(super) fn linearise(lowering: &mut Lowering<'_>, origin: Origin, region: Reg
 
 /// Trials and second derivatives of an energy; no trials where all are zero.
 fn hessian(lowering: &mut Lowering<'_>, energy: Id, tests: &[FieldInput]) -> (Vec<FieldInput>, Vec<Vec<Id>>) {
-    let symbols: Vec<Symbol> = tests.iter().map(|&test| lowering.symbols.symbol(SymbolKind::Field(test))).collect();
+    let symbols: Vec<Symbol> =
+        tests.iter().map(|&test| lowering.symbols.symbol(SymbolKind::Field(test))).collect();
     let triangle = derive::hessian(&mut lowering.pool, energy, &symbols);
     if triangle.iter().all(|&entry| lowering.pool.as_constant(entry) == Some(0.0)) {
         return (Vec::new(), vec![Vec::new(); tests.len()]);
@@ -201,7 +207,12 @@ pub(super) fn plain(lowering: &mut Lowering<'_>, origin: Origin, region: Region,
 }
 
 /// `d root / d value + alpha d root / d rate` of every root.
-pub(super) fn with_rate(lowering: &mut Lowering<'_>, roots: &[Id], value: SymbolKind, rate: SymbolKind) -> Vec<Id> {
+pub(super) fn with_rate(
+    lowering: &mut Lowering<'_>,
+    roots: &[Id],
+    value: SymbolKind,
+    rate: SymbolKind,
+) -> Vec<Id> {
     let (value, rate) = (lowering.symbols.symbol(value), lowering.symbols.symbol(rate));
     let alpha = lowering.input(SymbolKind::Alpha);
     let by_value = derive::derivative(&mut lowering.pool, roots, value);

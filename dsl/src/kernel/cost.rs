@@ -35,7 +35,11 @@ impl Cost {
             points: kernel.rule.weights.len(),
             prelude: kernel.schedule.cost(PRELUDE) as usize,
             geometry: geometry(kernel),
-            interpolation: kernel.inputs.iter().map(|input| 2 * kernel.use_of(input.input.field).nodes()).sum(),
+            interpolation: kernel
+                .inputs
+                .iter()
+                .map(|input| 2 * kernel.use_of(input.input.field).nodes())
+                .sum(),
             point: kernel.schedule.cost(POINT) as usize,
             accumulation: accumulation(kernel),
             temporaries: kernel.schedule.statements(PRELUDE).len() + kernel.schedule.statements(POINT).len(),
@@ -54,7 +58,8 @@ fn geometry(kernel: &Kernel) -> usize {
     let dimension = kernel.cell.dimension();
     let coordinates = kernel.coordinates.iter().filter(|&&read| read).count();
     let jacobian = 2 * nodes * (2 * dimension + coordinates);
-    let gradients = |one: &super::FieldUse| if kernel.needs_gradients(one.field) { 6 * one.nodes() } else { 0 };
+    let gradients =
+        |one: &super::FieldUse| if kernel.needs_gradients(one.field) { 6 * one.nodes() } else { 0 };
     jacobian + 16 + kernel.uses.iter().map(gradients).sum::<usize>()
 }
 

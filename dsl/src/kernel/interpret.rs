@@ -31,7 +31,12 @@ impl Basis {
 }
 
 /// The kernel's output rows; `globals` gives parameters, states, tables and the like.
-pub fn run(kernel: &Kernel, lowering: &Lowering<'_>, element: &ElementData, globals: &dyn Fn(SymbolKind) -> f64) -> Vec<f64> {
+pub fn run(
+    kernel: &Kernel,
+    lowering: &Lowering<'_>,
+    element: &ElementData,
+    globals: &dyn Fn(SymbolKind) -> f64,
+) -> Vec<f64> {
     let mut out = vec![0.0; kernel.rows()];
     let roots = kernel.job.roots();
     for (xi, weight) in kernel.rule.iter() {
@@ -64,10 +69,10 @@ impl Map {
         let (values, gradients) = tabulate(kernel.geometry, xi);
         let mut map = Map { x: [0.0; 2], jacobian: [[0.0; 2]; 2], measure: 0.0 };
         for (node, x) in element.nodes.iter().enumerate() {
-            for i in 0..2 {
-                map.x[i] += values[node] * x[i];
-                for (j, d) in gradients[node].iter().enumerate() {
-                    map.jacobian[i][j] += d * x[i];
+            for (axis, x) in x.iter().enumerate() {
+                map.x[axis] += values[node] * x;
+                for (row, d) in map.jacobian[axis].iter_mut().zip(&gradients[node]) {
+                    *row += d * x;
                 }
             }
         }
@@ -104,7 +109,11 @@ fn interpolate(kernel: &Kernel, bases: &[Basis], element: &ElementData, Input { 
     (0..one.nodes()).map(|node| at(node) * basis.read(node, input.derivative)).sum()
 }
 
-fn use_and_basis<'a>(kernel: &'a Kernel, bases: &'a [Basis], input: FieldInput) -> (&'a super::FieldUse, &'a Basis) {
+fn use_and_basis<'a>(
+    kernel: &'a Kernel,
+    bases: &'a [Basis],
+    input: FieldInput,
+) -> (&'a super::FieldUse, &'a Basis) {
     let position = kernel.uses.iter().position(|one| one.field == input.field).unwrap_or(0);
     (&kernel.uses[position], &bases[position])
 }

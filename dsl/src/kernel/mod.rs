@@ -100,9 +100,11 @@ impl Job {
         match self {
             Job::Value(density) => vec![*density],
             Job::Residual(flux) => flux.iter().map(|(_, id)| *id).collect(),
-            Job::Tangent(flux, tangent) => {
-                flux.iter().map(|(_, id)| *id).chain(tangent.entries.iter().flatten().flatten().copied()).collect()
-            }
+            Job::Tangent(flux, tangent) => flux
+                .iter()
+                .map(|(_, id)| *id)
+                .chain(tangent.entries.iter().flatten().flatten().copied())
+                .collect(),
             Job::Columns(columns) => columns.iter().flatten().map(|(_, id)| *id).collect(),
         }
     }
@@ -186,7 +188,9 @@ pub fn kernels(lowering: &mut Lowering<'_>, term: &Term, name: &str) -> Kernels 
         let weight = lowering.input(SymbolKind::Weight);
         ids.iter().map(|&id| lowering.pool.mul(weight, id)).collect()
     };
-    let make = |lowering: &mut Lowering<'_>, suffix: &str, job: Job| build(lowering, term, format!("{name}_{suffix}"), job);
+    let make = |lowering: &mut Lowering<'_>, suffix: &str, job: Job| {
+        build(lowering, term, format!("{name}_{suffix}"), job)
+    };
     let value = term.value.map(|value| {
         let value = weighted(lowering, &[value])[0];
         make(lowering, "value", Job::Value(value))
@@ -201,15 +205,21 @@ pub fn kernels(lowering: &mut Lowering<'_>, term: &Term, name: &str) -> Kernels 
             let row = weighted(lowering, row);
             row.into_iter().map(|id| (id != zero).then_some(id)).collect()
         });
-        let mut entries: Vec<Vec<Option<Id>>> = rows.collect();
-        if term.symmetric {
-            mirror(&mut entries);
-        }
-        let tangent = Tangent { tests: term.tests.clone(), trials: term.trials.clone(), entries, symmetric: term.symmetric };
+        let entries: Vec<Vec<Option<Id>>> = rows.collect();
+        let entries = if term.symmetric { mirrored(&entries) } else { entries };
+        let tangent = Tangent {
+            tests: term.tests.clone(),
+            trials: term.trials.clone(),
+            entries,
+            symmetric: term.symmetric,
+        };
         make(lowering, "tangent", Job::Tangent(flux.clone(), tangent))
     });
     let columns = (!term.globals.is_empty()).then(|| {
-        let columns = term.globals.iter().map(|(_, column)| term.tests.iter().copied().zip(weighted(lowering, column)).collect());
+        let columns = term
+            .globals
+            .iter()
+            .map(|(_, column)| term.tests.iter().copied().zip(weighted(lowering, column)).collect());
         let columns = columns.collect();
         let kinds = term.globals.iter().map(|(kind, _)| *kind).collect();
         (kinds, make(lowering, "global_tangent", Job::Columns(columns)))
@@ -219,12 +229,9 @@ pub fn kernels(lowering: &mut Lowering<'_>, term: &Term, name: &str) -> Kernels 
 }
 
 /// Takes the lower triangle for the upper one too, so that nothing is computed twice.
-fn mirror(entries: &mut [Vec<Option<Id>>]) {
-    for i in 0..entries.len() {
-        for j in 0..i {
-            entries[j][i] = entries[i][j];
-        }
-    }
+fn mirrored(entries: &[Vec<Option<Id>>]) -> Vec<Vec<Option<Id>>> {
+    let at = |i: usize, j: usize| entries[i.max(j)][i.min(j)];
+    (0..entries.len()).map(|i| (0..entries.len()).map(|j| at(i, j)).collect()).collect()
 }
 
 fn build(lowering: &mut Lowering<'_>, term: &Term, name: String, job: Job) -> Kernel {
@@ -247,7 +254,18 @@ fn build(lowering: &mut Lowering<'_>, term: &Term, name: String, job: Job) -> Ke
     coordinates[0] |= axisymmetric;
     let cell = if matches!(term.region, Region::Cells(_)) { Cell::Triangle } else { Cell::Segment };
     let geometry = element(cell, Space::P2);
-    Kernel { name, cell, geometry, axisymmetric, uses: uses(lowering, term, cell), rule: rule(cell, term.degree), inputs, coordinates, job, schedule }
+    Kernel {
+        name,
+        cell,
+        geometry,
+        axisymmetric,
+        uses: uses(lowering, term, cell),
+        rule: rule(cell, term.degree),
+        inputs,
+        coordinates,
+        job,
+        schedule,
+    }
 }
 
 /// The rule of this degree, or the best there is.
@@ -279,7 +297,9 @@ fn uses(lowering: &Lowering<'_>, term: &Term, cell: Cell) -> Vec<FieldUse> {
 
 fn stage_of(kind: SymbolKind) -> Stage {
     match kind {
-        SymbolKind::Coordinate(_) | SymbolKind::Field(_) | SymbolKind::FieldRate(_) | SymbolKind::Weight => POINT,
+        SymbolKind::Coordinate(_) | SymbolKind::Field(_) | SymbolKind::FieldRate(_) | SymbolKind::Weight => {
+            POINT
+        }
         _ => PRELUDE,
     }
 }

@@ -15,17 +15,33 @@ pub fn kernel(kernel: &Kernel, lowering: &Lowering<'_>) -> String {
     let uses: Vec<String> = kernel
         .uses
         .iter()
-        .map(|one| format!("{} ({} nodes x {})", lowering.model.fields[one.field.0].name, one.nodes(), one.components))
+        .map(|one| {
+            format!(
+                "{} ({} nodes x {})",
+                lowering.model.fields[one.field.0].name,
+                one.nodes(),
+                one.components
+            )
+        })
         .collect();
     // Writing to a string cannot fail.
-    let _ = writeln!(text, "kernel {}: {:?}, {} points, {}", kernel.name, kernel.cell, cost.points, uses.join(", "));
+    let _ = writeln!(
+        text,
+        "kernel {}: {:?}, {} points, {}",
+        kernel.name,
+        kernel.cell,
+        cost.points,
+        uses.join(", ")
+    );
     let _ = writeln!(
         text,
         "  per point: geometry {}, interpolation {}, law {}, accumulation {}; {} temporaries, {} bytes per element",
         cost.geometry, cost.interpolation, cost.point, cost.accumulation, cost.temporaries, cost.bytes
     );
     let roots: Vec<(String, Id)> = labels(kernel, lowering).into_iter().zip(kernel.job.roots()).collect();
-    let body = listing(&lowering.pool, &roots, &kernel.schedule, &|symbol| symbol_name(lowering, lowering.symbols.kind(symbol)));
+    let body = listing(&lowering.pool, &roots, &kernel.schedule, &|symbol| {
+        symbol_name(lowering, lowering.symbols.kind(symbol))
+    });
     for line in body.lines() {
         let _ = writeln!(text, "  {line}");
     }
@@ -34,7 +50,9 @@ pub fn kernel(kernel: &Kernel, lowering: &Lowering<'_>) -> String {
 
 fn labels(kernel: &Kernel, lowering: &Lowering<'_>) -> Vec<String> {
     let name = |input| input_name(lowering.model, input);
-    let flux = |flux: &[Flux]| -> Vec<String> { flux.iter().map(|(test, _)| format!("flux[{}]", name(*test))).collect() };
+    let flux = |flux: &[Flux]| -> Vec<String> {
+        flux.iter().map(|(test, _)| format!("flux[{}]", name(*test))).collect()
+    };
     match &kernel.job {
         Job::Value(_) => vec![String::from("value")],
         Job::Residual(rows) => flux(rows),
@@ -53,7 +71,9 @@ fn labels(kernel: &Kernel, lowering: &Lowering<'_>) -> Vec<String> {
 
 /// One line per kernel.
 pub fn cost_table<'a>(kernels: impl IntoIterator<Item = &'a Kernel>) -> String {
-    let mut text = String::from("kernel                               points prelude geometry interp.   law   acc.  total temps  bytes\n");
+    let mut text = String::from(
+        "kernel                               points prelude geometry interp.   law   acc.  total temps  bytes\n",
+    );
     for kernel in kernels {
         let cost = Cost::of(kernel);
         let _ = writeln!(

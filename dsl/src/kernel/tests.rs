@@ -13,7 +13,8 @@ use crate::source::SourceMap;
 fn model(text: &str) -> Model {
     let (mut sources, mut sink) = (SourceMap::new(), Sink::new());
     let main = sources.add("test.ansatz", text);
-    let program = crate::resolve::assemble(main, &mut sources, &mut |_, _| Err(String::from("no files")), &mut sink);
+    let program =
+        crate::resolve::assemble(main, &mut sources, &mut |_, _| Err(String::from("no files")), &mut sink);
     let model = crate::check::check(&program, &sources, &mut sink);
     model.unwrap_or_else(|| panic!("{}", render(&sink.finish(), &sources)))
 }
@@ -51,9 +52,8 @@ fn evaluate(forms: &Forms<'_>, kernel: &Kernel, element: &ElementData, parameter
 
 type Field = fn(f64, f64) -> [f64; 2];
 
-const U: Field = |x, y| {
-    [0.05 * x + 0.1 * x * y - 0.05 * x * x, 0.02 * y + 0.08 * y * y - 0.1 * x * y + 0.05 * x * x]
-};
+const U: Field =
+    |x, y| [0.05 * x + 0.1 * x * y - 0.05 * x * x, 0.02 * y + 0.08 * y * y - 0.1 * x * y + 0.05 * x * x];
 const V: Field = |x, y| [x * y + 0.2 * x, x * x - 0.5 * y * y];
 const W: Field = |x, y| [x - 0.3 * x * x, x * y + y];
 
@@ -146,7 +146,8 @@ fn the_variation_is_the_derivative_of_the_energy_also_on_curved_cells() {
         let model = on_square(frame, NEO_HOOKEAN);
         let (forms, kernels, parameters) = kernels_of(&model);
         let (value, residual) = (kernels.value.unwrap(), kernels.residual.unwrap());
-        let slopes = differences(&curved(), 0.0, &|element| evaluate(&forms, &value, element, &parameters)).concat();
+        let slopes =
+            differences(&curved(), 0.0, &|element| evaluate(&forms, &value, element, &parameters)).concat();
         // Central differences with step 1e-5 are right to about 1e-10 here.
         assert_close(&evaluate(&forms, &residual, &curved(), &parameters), &slopes, 1e-6);
     }
@@ -172,7 +173,7 @@ const TERMS: &[(&str, &str)] = &[
     ),
     (
         "an edge",
-        "field u: Vector[Length] in P2 on square = 0; param c = 2 [nN*s/um^4]; physics drag { load u with -c*norm(u)/(1 um)*dt(u) on rim.right; }",
+        "field u: Vector[Length] in P2 on square = 0; param c = 2 [nN*s/um^3]; physics drag { load u with -c*norm(u)/(1 um)*dt(u) on rim.right; }",
     ),
 ];
 
@@ -190,7 +191,8 @@ fn tangents_are_derivatives_of_residuals_by_values_and_rates() {
             let wave = |k: usize| (1.0 + k as f64).sin() * 0.1;
             element.values = (0..n).map(wave).collect();
             element.rates = (0..n).map(|k| wave(2 * k + 1)).collect();
-            let columns = differences(&element, alpha, &|element| evaluate(&forms, &residual, element, &parameters));
+            let columns =
+                differences(&element, alpha, &|element| evaluate(&forms, &residual, element, &parameters));
             let rows = evaluate(&forms, &tangent, &element, &parameters);
             assert_close(&rows[..n], &evaluate(&forms, &residual, &element, &parameters), 1e-14);
             let symmetric = tangent.rows() < n + n * n;
@@ -198,7 +200,10 @@ fn tangents_are_derivatives_of_residuals_by_values_and_rates() {
             for i in 0..n {
                 for j in (0..n).filter(|&j| !symmetric || j <= i) {
                     let (found, expected) = (rows[n + at(i, j)], columns[j][i]);
-                    assert!((found - expected).abs() < 1e-6, "{what}, {frame}: K[{i}, {j}] = {found}, differences give {expected}");
+                    assert!(
+                        (found - expected).abs() < 1e-6,
+                        "{what}, {frame}: K[{i}, {j}] = {found}, differences give {expected}"
+                    );
                 }
             }
             assert_eq!(symmetric, !what.contains("unsymmetric") && !what.contains("edge"), "{what}");

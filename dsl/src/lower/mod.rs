@@ -22,9 +22,9 @@ use crate::model::{Expr, LetId, LocalId, Model, PairId, RegionId};
 use crate::scalar::{Id, Pool};
 use crate::source::Span;
 
+pub use names::{input_name, piece_name, region_names, symbol_name};
 pub use quantity::{Part, Quantity, QuantityKind, Region};
 pub use reduce::RunValue;
-pub use names::{input_name, piece_name, region_names, symbol_name};
 pub use symbol::{FieldInput, SymbolKind, Symbols};
 pub use value::{Condition, Value};
 

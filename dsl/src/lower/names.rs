@@ -23,7 +23,10 @@ pub fn symbol_name(lowering: &Lowering<'_>, kind: SymbolKind) -> String {
     let model = lowering.model;
     match kind {
         K::Parameter(param) => model.params[param.0].name.clone(),
-        K::Measure(measure) => format!("measure_{}", region_names(model, &lowering.measures[measure]).join("_").replace('.', "_")),
+        K::Measure(measure) => format!(
+            "measure_{}",
+            region_names(model, &lowering.measures[measure]).join("_").replace('.', "_")
+        ),
         K::Table(table) => lowering.tables[table].name.clone(),
         K::Time => String::from("t"),
         K::State(state) => model.states[state.0].name.clone(),
@@ -74,15 +77,21 @@ impl Lowering<'_> {
     /// Remembers what the model calls a value, component by component; the first name of a scalar stays.
     pub(super) fn hint(&mut self, value: &Value, name: &str) {
         let axes = match self.model.coordinates.frame {
-            Frame::Axisymmetric => [&self.model.coordinates.names[0], "theta", &self.model.coordinates.names[1]],
+            Frame::Axisymmetric => {
+                [&self.model.coordinates.names[0], "theta", &self.model.coordinates.names[1]]
+            }
             Frame::PlaneStrain => [&self.model.coordinates.names[0], &self.model.coordinates.names[1], "z"],
         };
         let mut names: Vec<(Id, String)> = Vec::new();
         match value {
             Value::Scalar(x) => names.push((*x, name.to_owned())),
-            Value::Vector(v) => names.extend(v.iter().zip(axes).map(|(x, axis)| (*x, format!("{name}_{axis}")))),
+            Value::Vector(v) => {
+                names.extend(v.iter().zip(axes).map(|(x, axis)| (*x, format!("{name}_{axis}"))))
+            }
             Value::Tensor(a) => {
-                names.extend(a.iter().enumerate().map(|(k, x)| (*x, format!("{name}_{}{}", axes[k / 3], axes[k % 3]))));
+                names.extend(
+                    a.iter().enumerate().map(|(k, x)| (*x, format!("{name}_{}{}", axes[k / 3], axes[k % 3]))),
+                );
             }
             _ => {}
         }

@@ -4,8 +4,8 @@ use super::expression::{Dialect, Names, Printer, number};
 use super::ident;
 use super::layout::Slots;
 use super::tables::Tables;
-use crate::kernel::{FieldUse, Flux, Input, Job, Kernel, POINT, PRELUDE, Tangent};
-use crate::lower::{FieldInput, Lowering, SymbolKind, input_name};
+use crate::kernel::{FieldUse, Input, Job, Kernel, POINT, PRELUDE};
+use crate::lower::{FieldInput, Lowering, SymbolKind};
 use crate::scalar::schedule::Schedule;
 use crate::scalar::{Id, symbols_of};
 use ansatz_elements::Cell;
@@ -36,11 +36,11 @@ const RESERVED: [&str; 20] = [
     "columns", "total", "node", "v", "zero", "basis",
 ];
 
-struct Emitter<'a, 'm> {
-    kernel: &'a Kernel,
-    lowering: &'a Lowering<'m>,
+pub(super) struct Emitter<'a, 'm> {
+    pub(super) kernel: &'a Kernel,
+    pub(super) lowering: &'a Lowering<'m>,
     slots: &'a Slots,
-    names: Names,
+    pub(super) names: Names,
 }
 
 impl Emitter<'_, '_> {
@@ -192,7 +192,7 @@ impl Emitter<'_, '_> {
         quote!(#map #interpolation #(#statements)* #sums)
     }
 
-    fn value(&self, id: Id) -> TokenStream {
+    pub(super) fn value(&self, id: Id) -> TokenStream {
         Printer { lowering: self.lowering, schedule: &self.kernel.schedule, dialect: Dialect::Lanes }
             .value(id, &self.names)
     }
@@ -283,7 +283,7 @@ impl Emitter<'_, '_> {
     }
 
     /// Index of a local unknown.
-    fn unknown(&self, one: &FieldUse, component: usize, node: &Ident) -> TokenStream {
+    pub(super) fn unknown(&self, one: &FieldUse, component: usize, node: &Ident) -> TokenStream {
         let offset = count(one.first + component);
         match (one.components, one.first + component) {
             (1, 0) => quote!(#node),
@@ -300,7 +300,7 @@ impl Emitter<'_, '_> {
     }
 
     /// Value or derivative of the basis function of a node.
-    fn basis(&self, one: &FieldUse, input: FieldInput, node: &Ident) -> TokenStream {
+    pub(super) fn basis(&self, one: &FieldUse, input: FieldInput, node: &Ident) -> TokenStream {
         let field = self.field_name(one);
         match input.derivative {
             None => {
@@ -316,144 +316,6 @@ impl Emitter<'_, '_> {
 
     fn field_name(&self, one: &FieldUse) -> String {
         self.lowering.model.fields[one.field.0].name.clone()
-    }
-
-    /// `rows[first + unknown] += flux . basis` for all tests.
-    fn add_flux(&mut self, flux: &[Flux], rows: &TokenStream, first: usize) -> TokenStream {
-        let mut code = Vec::new();
-        for one in &self.kernel.uses {
-            let mut sums = Vec::new();
-            for component in 0..one.components {
-                let of: Vec<&Flux> = flux
-                    .iter()
-                    .filter(|(test, _)| test.field == one.field && test.component == component)
-                    .collect();
-                if of.is_empty() {
-                    continue;
-                }
-                let row = self.unknown(
-                    &FieldUse { first: one.first + first, ..one.clone() },
-                    component,
-                    &ident("a"),
-                );
-                let mut sum = quote!(#rows[#row]);
-                for (test, id) in of {
-                    let name = self.names.unused(&format!("flux_{}", input_name(self.lowering.model, *test)));
-                    let (value, basis) = (self.value(*id), self.basis(one, *test, &ident("a")));
-                    code.push(quote!(let #name = #value;));
-                    sum = quote!(#name.mul_add(#basis, #sum));
-                }
-                sums.push(quote!(#rows[#row] = #sum;));
-            }
-            let nodes = count(one.nodes());
-            if !sums.is_empty() {
-                code.push(quote!(for a in 0..#nodes { #(#sums)* }));
-            }
-        }
-        quote!(#(#code)*)
-    }
-
-    /// For every trial node: the derivative of the fluxes by its unknowns, then the products with the test functions.
-    fn add_tangent(&mut self, tangent: &Tangent) -> TokenStream {
-        let entries = self.entry_names(tangent);
-        let (names, values): (Vec<_>, Vec<_>) =
-            entries.iter().flatten().flatten().map(|(name, value)| (name, value)).unzip();
-        let mut code = vec![quote!(#(let #names = #values;)*)];
-        for trial in &self.kernel.uses {
-            let mut columns = Vec::new();
-            for component in 0..trial.components {
-                columns.push(self.add_column(tangent, &entries, trial, component));
-            }
-            let nodes = count(trial.nodes());
-            code.push(quote!(for b in 0..#nodes { #(#columns)* }));
-        }
-        quote!(#(#code)*)
-    }
-
-    /// A name and value for each entry; equal entries of a symmetric matrix share a name.
-    fn entry_names(&mut self, tangent: &Tangent) -> Vec<Vec<Option<(Ident, TokenStream)>>> {
-        let model = self.lowering.model;
-        let mut rows = Vec::new();
-        for (test, row) in tangent.tests.iter().zip(&tangent.entries) {
-            let mut names = Vec::new();
-            for (trial, entry) in tangent.trials.iter().zip(row) {
-                names.push(entry.map(|id| {
-                    let name = format!("d_{}_{}", input_name(model, *test), input_name(model, *trial));
-                    (self.names.unused(&name), self.value(id))
-                }));
-            }
-            rows.push(names);
-        }
-        rows
-    }
-
-    fn add_column(
-        &self,
-        tangent: &Tangent,
-        entries: &[Vec<Option<(Ident, TokenStream)>>],
-        trial: &FieldUse,
-        component: usize,
-    ) -> TokenStream {
-        let mut code = Vec::new();
-        let mut slopes: Vec<(FieldInput, Ident)> = Vec::new();
-        for (test, row) in tangent.tests.iter().zip(entries) {
-            let terms: Vec<(TokenStream, &Ident)> = tangent
-                .trials
-                .iter()
-                .zip(row)
-                .filter(|(input, _)| input.field == trial.field && input.component == component)
-                .filter_map(|(input, entry)| {
-                    entry.as_ref().map(|(name, _)| (self.basis(trial, *input, &ident("b")), name))
-                })
-                .collect();
-            let Some(((basis, name), rest)) = terms.split_first() else { continue };
-            let sum = rest
-                .iter()
-                .fold(quote!(#name * #basis), |sum, (basis, name)| quote!(#name.mul_add(#basis, #sum)));
-            let slope = format_ident!("slope_{}", input_name(self.lowering.model, *test));
-            code.push(quote!(let #slope = #sum;));
-            slopes.push((*test, slope));
-        }
-        for test in &self.kernel.uses {
-            for row in 0..test.components {
-                code.push(self.add_block(tangent, &slopes, (test, row), (trial, component)));
-            }
-        }
-        quote!({ #(#code)* })
-    }
-
-    /// `tangent[row, column] += test . slope` for all test nodes.
-    fn add_block(
-        &self,
-        tangent: &Tangent,
-        slopes: &[(FieldInput, Ident)],
-        (test, row): (&FieldUse, usize),
-        (trial, column): (&FieldUse, usize),
-    ) -> TokenStream {
-        let of: Vec<&(FieldInput, Ident)> =
-            slopes.iter().filter(|(input, _)| input.field == test.field && input.component == row).collect();
-        if of.is_empty() || (tangent.symmetric && test.first < trial.first) {
-            return TokenStream::new();
-        }
-        let (i, j) = (self.unknown(test, row, &ident("a")), self.unknown(trial, column, &ident("b")));
-        let n = count(self.kernel.unknowns());
-        let position = if tangent.symmetric { quote!(lower(#i, #j)) } else { quote!(#n * (#i) + #j) };
-        let first = match tangent.symmetric && test.first == trial.first {
-            true if row >= column => quote!(b),
-            true => quote!(b + 1),
-            false => quote!(0),
-        };
-        let nodes = count(test.nodes());
-        let sum = of.iter().fold(quote!(tangent[at]), |sum, (input, slope)| {
-            let basis = self.basis(test, *input, &ident("a"));
-            quote!(#slope.mul_add(#basis, #sum))
-        });
-        quote! {
-            for a in #first..#nodes {
-                let at = #position;
-                tangent[at] = #sum;
-            }
-        }
     }
 }
 
@@ -472,96 +334,6 @@ fn used_at_points(
     read.into_iter().filter_map(|id| names.name_of(lowering, id)).map(|name| name.to_string()).collect()
 }
 
-fn count(value: usize) -> Literal {
+pub(super) fn count(value: usize) -> Literal {
     Literal::usize_unsuffixed(value)
-}
-
-/// Functions that kernels share; those that none of these kernels needs are left out.
-pub fn helpers(kernels: &[&Kernel]) -> TokenStream {
-    let any = |needs: &dyn Fn(&Kernel) -> bool| kernels.iter().any(|kernel| needs(kernel));
-    let symmetric = |kernel: &Kernel| matches!(&kernel.job, Job::Tangent(_, tangent) if tangent.symmetric);
-    let lower = any(&symmetric).then(lower);
-    let coordinate = any(&|kernel| kernel.coordinates.contains(&true)).then(coordinate);
-    let triangle = any(&|kernel| kernel.cell == Cell::Triangle).then(triangle);
-    let segment = any(&|kernel| kernel.cell == Cell::Segment).then(segment);
-    let gradients = |kernel: &Kernel| kernel.uses.iter().any(|one| kernel.needs_gradients(one.field));
-    let pull_back = any(&gradients).then(pull_back);
-    quote!(#lower #coordinate #triangle #segment #pull_back)
-}
-
-fn lower() -> TokenStream {
-    quote! {
-        /// Position of entry (i, j), j <= i, in a lower triangle stored row by row.
-        #[inline(always)]
-        const fn lower(i: usize, j: usize) -> usize {
-            i * (i + 1) / 2 + j
-        }
-    }
-}
-
-fn coordinate() -> TokenStream {
-    quote! {
-        /// A coordinate of the point.
-        #[inline(always)]
-        fn coordinate<S: Simd, const N: usize>(s: S, x: &[[Lane<S>; 2]; N], values: &[f64; N], axis: usize) -> Lane<S> {
-            let mut sum = Lane::splat(s, 0.0);
-            for a in 0..N {
-                sum = x[a][axis].mul_add(Lane::splat(s, values[a]), sum);
-            }
-            sum
-        }
-    }
-}
-
-fn triangle() -> TokenStream {
-    quote! {
-        /// Inverse transposed Jacobian of a triangle at a point, by rows, and its determinant.
-        #[inline(always)]
-        fn triangle<S: Simd, const N: usize>(s: S, x: &[[Lane<S>; 2]; N], gradients: &[[f64; 2]; N]) -> ([[Lane<S>; 2]; 2], Lane<S>) {
-            let mut j = [[Lane::splat(s, 0.0); 2]; 2];
-            for a in 0..N {
-                for i in 0..2 {
-                    for k in 0..2 {
-                        j[i][k] = x[a][i].mul_add(Lane::splat(s, gradients[a][k]), j[i][k]);
-                    }
-                }
-            }
-            let determinant = j[0][0] * j[1][1] - j[0][1] * j[1][0];
-            let reciprocal = Lane::splat(s, 1.0) / determinant;
-            let map = [[j[1][1] * reciprocal, -j[1][0] * reciprocal], [-j[0][1] * reciprocal, j[0][0] * reciprocal]];
-            (map, determinant)
-        }
-    }
-}
-
-fn segment() -> TokenStream {
-    quote! {
-        /// Length of an edge per unit of its parameter at a point.
-        #[inline(always)]
-        fn segment<S: Simd, const N: usize>(s: S, x: &[[Lane<S>; 2]; N], gradients: &[[f64; 1]; N]) -> Lane<S> {
-            let mut t = [Lane::splat(s, 0.0); 2];
-            for a in 0..N {
-                for i in 0..2 {
-                    t[i] = x[a][i].mul_add(Lane::splat(s, gradients[a][0]), t[i]);
-                }
-            }
-            (t[0] * t[0] + t[1] * t[1]).sqrt()
-        }
-    }
-}
-
-fn pull_back() -> TokenStream {
-    quote! {
-        /// Gradients of basis functions in the coordinates of the model.
-        #[inline(always)]
-        fn pull_back<S: Simd, const N: usize>(s: S, map: &[[Lane<S>; 2]; 2], reference: &[[f64; 2]; N]) -> [[Lane<S>; 2]; N] {
-            let mut gradients = [[Lane::splat(s, 0.0); 2]; N];
-            for a in 0..N {
-                for i in 0..2 {
-                    gradients[a][i] = map[i][0] * Lane::splat(s, reference[a][0]) + map[i][1] * Lane::splat(s, reference[a][1]);
-                }
-            }
-            gradients
-        }
-    }
 }

@@ -1,10 +1,12 @@
 //! Stage 6 of 6: forms and kernels become Rust. Input: [`Forms`] and their kernels. Output: the text of a module with `Parameters`,
 //! `PROGRAM` and `simulation`, formatted. The only place that names `quote`; emitted code names only `::ansatz::generated`.
 
+mod accumulate;
 mod body;
 mod expression;
 mod fields;
 mod geometry;
+mod helpers;
 mod integral;
 mod kernel;
 mod layout;

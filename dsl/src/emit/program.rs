@@ -3,7 +3,7 @@
 use super::body::{Sources, body};
 use super::integral::Emitted;
 use super::layout::Slots;
-use super::{docs, fields, geometry, kernel, outputs, parameters, states, tests};
+use super::{docs, fields, geometry, helpers, outputs, parameters, states, tests};
 use crate::form::{Forms, FunctionalKind, Term};
 use crate::kernel::{Kernel, Kernels, kernels};
 use crate::lower::{QuantityKind, region_names};
@@ -136,7 +136,7 @@ fn program(forms: &mut Forms<'_>, plan: &Plan, sources: &SourceMap) -> TokenStre
     let geometry = geometry::geometry(forms, &slots);
     let run_values = tests::run_values(forms, &slots);
     let (functions, basis) = (&emitted.functions, emitted.tables.tokens());
-    let (helpers, no_variation) = (kernel::helpers(&plan.kernels()), emitted.no_variation());
+    let (helpers, no_variation) = (helpers::helpers(&plan.kernels()), emitted.no_variation());
     quote! {
         pub static PROGRAM: Program = Program {
             #head

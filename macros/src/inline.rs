@@ -28,7 +28,8 @@ pub fn included(input: TokenStream) -> Result<Input, Refusal> {
     let path = path.ok_or((String::from("write include_model!(\"path/to/model.ansatz\")"), call))?;
     let folder = call.local_file().and_then(|f| f.parent().map(Path::to_path_buf)).unwrap_or_default();
     let file = folder.join(path);
-    let text = std::fs::read_to_string(&file).map_err(|e| (format!("cannot read the model `{}`: {e}", file.display()), call))?;
+    let text = std::fs::read_to_string(&file)
+        .map_err(|e| (format!("cannot read the model `{}`: {e}", file.display()), call))?;
     Ok(Input { name: path.into(), file, text, tokens: Vec::new(), in_file: true })
 }
 
@@ -40,14 +41,22 @@ pub fn written(input: TokenStream) -> Result<Input, Refusal> {
         return Err((String::from("the model is empty; it starts with `model name;`"), call));
     };
     let file = first.span().local_file();
-    let file = file.ok_or((String::from("the model's text is not in a file of its own; use include_model!"), call))?;
-    let whole = std::fs::read_to_string(&file).map_err(|e| (format!("cannot read `{}`: {e}", file.display()), call))?;
+    let file =
+        file.ok_or((String::from("the model's text is not in a file of its own; use include_model!"), call))?;
+    let whole = std::fs::read_to_string(&file)
+        .map_err(|e| (format!("cannot read `{}`: {e}", file.display()), call))?;
     let lines = line_starts(&whole);
     let start = byte_at(&whole, &lines, first.span().start());
     let end = byte_at(&whole, &lines, last.span().end());
     let mut tokens = Vec::new();
     collect(&whole, &lines, trees, &mut tokens);
-    Ok(Input { name: file.display().to_string(), text: blanked(&whole, start, end), file, tokens, in_file: false })
+    Ok(Input {
+        name: file.display().to_string(),
+        text: blanked(&whole, start, end),
+        file,
+        tokens,
+        in_file: false,
+    })
 }
 
 /// The text with everything outside `start .. end` blanked, line breaks kept.

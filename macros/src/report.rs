@@ -30,10 +30,18 @@ pub fn expand(input: Result<Input, Refusal>) -> TokenStream {
 
 /// `pub mod NAME { .. }`, with the files' bytes named so that cargo watches them.
 fn module(output: &Output, files: &[PathBuf]) -> TokenStream {
-    let watched = files.iter().map(|f| absolute(f)).map(|f| format!("const _: &[u8] = include_bytes!({f:?});\n"));
-    let text = format!("pub mod {} {{\n{}{}\n}}", output.name, watched.collect::<String>(), output.rust);
+    let watched =
+        files.iter().map(|f| absolute(f)).map(|f| format!("const _: &[u8] = include_bytes!({f:?});\n"));
+    let (name, watched) = (&output.name, watched.collect::<String>());
+    let text = format!(
+        "/// The model `{name}`.\n#[allow(missing_docs)]\npub mod {name} {{\n{watched}{}\n}}",
+        output.rust
+    );
     text.parse().unwrap_or_else(|e| {
-        compile_error(&format!("the compiler emitted text that is not Rust ({e}); please report this model"), Span::call_site())
+        compile_error(
+            &format!("the compiler emitted text that is not Rust ({e}); please report this model"),
+            Span::call_site(),
+        )
     })
 }
 

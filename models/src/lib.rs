@@ -1,1 +1,12 @@
-//! The models that ship with Ansatz.
+//! The models that ship with Ansatz, each compiled into a module of its own: `Parameters`, `PROGRAM`, `simulation`.
+
+ansatz::include_model!("../dry/model.ansatz");
+ansatz::include_model!("../dry_axis_points/model.ansatz");
+ansatz::include_model!("../dry_printed/model.ansatz");
+ansatz::include_model!("../dry_wide_roof/model.ansatz");
+
+use ansatz::generated::Program;
+
+/// All of them.
+pub static PROGRAMS: [&Program; 4] =
+    [&dry_contact::PROGRAM, &dry_axis_points::PROGRAM, &dry_printed::PROGRAM, &dry_wide_roof::PROGRAM];

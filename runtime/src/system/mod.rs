@@ -14,6 +14,7 @@ mod globals;
 mod newton;
 mod observables;
 mod point;
+mod probe;
 mod start;
 mod states;
 mod terms;
@@ -23,6 +24,7 @@ pub use balance::Balance;
 pub use frames::FrameSampler;
 pub use newton::{NewtonReport, StageProblem};
 pub use point::{Place, Sampler, node_places};
+pub use probe::Probe;
 pub use terms::At;
 pub use unknowns::{FieldNumbers, Unknowns, domain_nodes, region_cells};
 

@@ -1,0 +1,51 @@
+//! Times one benchmark and prints it as a JSON line. Use a release build: `cargo run --release -p ansatz-benches -- p1 64 axi`.
+
+use ansatz_benches::assembly::Kind;
+use ansatz_benches::report;
+use serde_json::Value;
+use std::path::Path;
+use std::process::ExitCode;
+
+const USAGE: &str = "usage: ansatz-benches p1 N ps|axi    assembly on N x N x 2 triangles
+                      p2 N           Cook's membrane
+                      p4 N           a sphere pressed into a cylinder
+                      compile FILE   the stages of the compiler
+                      dry TIME [COARSE]   the dry model to a time [s]";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match run(&words) {
+        Ok(line) => {
+            say(&line);
+            ExitCode::SUCCESS
+        }
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(words: &[&str]) -> Result<Value, String> {
+    match words {
+        ["p1", n, "ps"] => report::assembly(number(n)?, Kind::PlaneStrain),
+        ["p1", n, "axi"] => report::assembly(number(n)?, Kind::Axisymmetric),
+        ["p2", n] => report::cook(number(n)?),
+        ["p4", n] => report::sphere(number(n)?),
+        ["compile", file] => report::compiler(Path::new(file)),
+        ["dry", until] => report::dry(number(until)?, 1.0),
+        ["dry", until, coarse] => report::dry(number(until)?, number(coarse)?),
+        _ => Err(USAGE.into()),
+    }
+}
+
+fn number<T: std::str::FromStr>(word: &str) -> Result<T, String> {
+    word.parse().map_err(|_| format!("`{word}` is no number\n{USAGE}"))
+}
+
+fn say(line: &Value) {
+    use std::io::Write;
+    // A reader that went away is no error.
+    let _ = writeln!(std::io::stdout(), "{line}");
+}

@@ -1,0 +1,112 @@
+//! One benchmark as one JSON line, with the keys that the peers' lines have.
+
+use crate::assembly::{Assembly, Kind};
+use crate::clock::{Clock, median};
+use crate::compiler::stages;
+use crate::solves::Solve;
+use ansatz::observer::Observer;
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// P1 on n x n x 2 triangles: nanoseconds per element of residual and tangent, the tangent with its residual and the insertion.
+///
+/// # Errors
+/// None with the shipped models.
+pub fn assembly(n: usize, kind: Kind) -> Result<Value, String> {
+    let clock = Clock::start();
+    let mut problem = Assembly::new(n, kind).map_err(|e| e.to_string())?;
+    let setup = clock.seconds();
+    let checks = problem.checks().map_err(|e| e.to_string())?;
+    let unknowns = problem.unknowns();
+    let mut probe = problem.probe().map_err(|e| e.to_string())?;
+    let elements = 2 * n * n;
+    let residual = median(|| drop(std::hint::black_box(probe.residual())));
+    let tangent = median(|| probe.assemble());
+    let per_element = |seconds: f64| seconds / elements as f64 * 1e9;
+    let kind = if kind == Kind::Axisymmetric { "axi" } else { "ps" };
+    Ok(json!({
+        "problem": "P1", "kind": kind, "peer": "ansatz", "n_elements": elements, "n_dofs": unknowns, "setup_s": setup,
+        "res_ns_el": per_element(residual), "tan_ns_el": per_element(tangent),
+        "E": checks.energy, "Rv": checks.residual, "Kvw": checks.tangent,
+    }))
+}
+
+/// P2 on n x n x 2 triangles: the whole solve.
+///
+/// # Errors
+/// If Newton's method does not converge.
+pub fn cook(n: usize) -> Result<Value, String> {
+    solve("P2", &["tip_ux", "tip_uy"], || Solve::cook(n))
+}
+
+/// P4 on n x n x 2 triangles: the whole solve.
+///
+/// # Errors
+/// If Newton's method does not converge.
+pub fn sphere(n: usize) -> Result<Value, String> {
+    solve("P4a", &["uz", "force"], || Solve::sphere(n))
+}
+
+fn solve(
+    problem: &str,
+    results: &[&str],
+    setup: impl Fn() -> Result<Solve, ansatz::Error>,
+) -> Result<Value, String> {
+    let clock = Clock::start();
+    let mut prepared = setup().map_err(|e| e.to_string())?;
+    let setup = clock.seconds();
+    let clock = Clock::start();
+    let solved = prepared.run().map_err(|e| e.to_string())?;
+    let run = clock.seconds();
+    let total: usize = solved.iterations.iter().sum();
+    let mut line = json!({
+        "problem": problem, "peer": "ansatz", "n_elements": prepared.cells(), "n_dofs": prepared.unknowns(),
+        "its": solved.iterations, "total_its": total, "setup_s": setup, "run_s": run, "total_s": setup + run,
+        "per_it_ms": run / total as f64 * 1e3,
+    });
+    // The first column of the tables is the time.
+    for (name, value) in results.iter().zip(solved.results.iter().skip(1)) {
+        line[name] = json!(value);
+    }
+    Ok(line)
+}
+
+/// Seconds of each stage of the compiler.
+///
+/// # Errors
+/// What the compiler says about the model.
+pub fn compiler(file: &Path) -> Result<Value, String> {
+    let mut line = json!({ "problem": "compile", "model": file.display().to_string(), "peer": "ansatz" });
+    let times = stages(file)?;
+    line["total_s"] = json!(times.iter().map(|(_, seconds)| seconds).sum::<f64>());
+    for (stage, seconds) in times {
+        line[stage] = json!(seconds);
+    }
+    Ok(line)
+}
+
+/// A whole run of the dry model to a time [s].
+///
+/// # Errors
+/// If the run fails.
+pub fn dry(until: f64, coarse: f64) -> Result<Value, String> {
+    struct Quiet;
+    impl Observer for Quiet {}
+    use ansatz_models::dry_contact;
+    let clock = Clock::start();
+    let parameters = dry_contact::Parameters { coarse, ..Default::default() };
+    let mut simulation = dry_contact::simulation(&parameters).map_err(|e| e.to_string())?;
+    let setup = clock.seconds();
+    let clock = Clock::start();
+    let outcome = simulation.run(&mut Quiet, Some(until)).map_err(|e| e.to_string())?;
+    let run = clock.seconds();
+    let statistics = simulation.record().statistics();
+    let system = simulation.system();
+    Ok(json!({
+        "problem": "dry", "peer": "ansatz", "n_elements": system.mesh.cells.len(), "n_dofs": system.equation_count(),
+        "matrix_entries": system.matrix_entries(), "until": until, "outcome": outcome,
+        "reached": simulation.record().times().last(), "steps": statistics.accepted, "rejected": statistics.rejected,
+        "total_its": statistics.iterations, "setup_s": setup, "run_s": run, "total_s": setup + run,
+        "per_it_ms": run / statistics.iterations as f64 * 1e3,
+    }))
+}

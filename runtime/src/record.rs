@@ -25,6 +25,8 @@ pub struct RunRecord {
     steps: Vec<Vec<f64>>,
     /// Index of the first point of the smooth stretch that each point belongs to.
     stretches: Vec<usize>,
+    /// The next point begins a stretch that starts at this one.
+    corner: Option<usize>,
     fired: Vec<Firing>,
     statistics: Statistics,
     end: End,
@@ -38,6 +40,7 @@ impl RunRecord {
             times: Vec::new(),
             steps: Vec::new(),
             stretches: Vec::new(),
+            corner: None,
             fired: Vec::new(),
             statistics: Statistics::default(),
             end: End::Finished,
@@ -53,9 +56,15 @@ impl RunRecord {
 
     /// Adds the end of an accepted step.
     pub fn push(&mut self, time: f64, globals: Vec<f64>) {
-        self.stretches.push(self.stretches.last().copied().unwrap_or(0));
+        let begun = self.corner.take().or(self.stretches.last().copied());
+        self.stretches.push(begun.unwrap_or(0));
         self.times.push(time);
         self.steps.push(globals);
+    }
+
+    /// Notes that the solution may have a kink at the last point: interpolation does not reach across it.
+    pub fn corner(&mut self) {
+        self.corner = self.times.len().checked_sub(1);
     }
 
     /// Notes that an event fired.

@@ -11,6 +11,9 @@ const HALVINGS: usize = 8;
 /// The line search accepts a step when |du . R| falls below this part of its start.
 const DECREASE: f64 = 0.9;
 
+/// Factors are kept for a further step while each step leaves less than this part of the residual.
+const CONTRACTION: f64 = 0.05;
+
 /// One implicit stage: find y with F(t, y, alpha (y - base)) = 0.
 #[derive(Clone, Copy, Debug)]
 pub struct StageProblem<'a> {
@@ -49,48 +52,79 @@ struct Iterate {
     residual: Vec<f64>,
 }
 
+/// How far a stage is.
+struct Progress {
+    current: Iterate,
+    /// Size of the forces that balance; a residual is small against it.
+    scale: f64,
+    /// The last step made the residual so much smaller that the same factors will do again.
+    keep_factors: bool,
+    report: NewtonReport,
+}
+
 impl System {
     /// Solves one stage; `y` is the prediction on entry and the solution on return.
-    pub fn solve_stage(
-        &mut self,
-        problem: &StageProblem<'_>,
-        y: &mut [f64],
-    ) -> Result<NewtonReport, SolveError> {
+    pub fn solve_stage(&mut self, problem: &StageProblem<'_>, y: &mut [f64]) -> Result<NewtonReport, SolveError> {
         let mut start = y.to_vec();
         self.apply_holds(problem.time, &mut start);
-        let mut report = NewtonReport::default();
-        let mut current = match self.evaluate(problem, start) {
+        let current = match self.evaluate(problem, start) {
             Ok(iterate) => iterate,
-            Err(cause) => return Err(self.failure(problem, cause, &report, None)),
+            Err(cause) => return Err(self.failure(problem, cause, &NewtonReport::default(), None)),
         };
-        while report.iterations < self.settings.newton_iterations {
-            match self.iterate(problem, &mut current, &mut report) {
+        let mut progress =
+            Progress { current, scale: 0.0, keep_factors: false, report: NewtonReport::default() };
+        while progress.report.iterations < self.settings.newton_iterations {
+            match self.iterate(problem, &mut progress) {
                 Ok(false) => {}
                 Ok(true) => {
-                    y.copy_from_slice(&current.y);
-                    return Ok(report);
+                    y.copy_from_slice(&progress.current.y);
+                    return Ok(progress.report);
                 }
-                Err(cause) => return Err(self.failure(problem, cause, &report, Some(&current))),
+                Err(cause) => {
+                    return Err(self.failure(problem, cause, &progress.report, Some(&progress.current)));
+                }
             }
         }
-        Err(self.failure(problem, Cause::NoConvergence, &report, Some(&current)))
+        Err(self.failure(problem, Cause::NoConvergence, &progress.report, Some(&progress.current)))
     }
 
-    /// One iteration; true when converged.
-    fn iterate(
-        &mut self,
-        problem: &StageProblem<'_>,
-        current: &mut Iterate,
-        report: &mut NewtonReport,
-    ) -> Result<bool, Cause> {
-        let (balance, direction) = self.direction(problem, current, report)?;
-        report.iterations += 1;
+    /// Steps with the present factors as long as they do, then one with a new tangent; true when converged.
+    fn iterate(&mut self, problem: &StageProblem<'_>, progress: &mut Progress) -> Result<bool, Cause> {
+        while progress.keep_factors {
+            if self.step_with_old_factors(problem, progress)? && self.converged(progress) {
+                return Ok(true);
+            }
+        }
+        let (balance, direction) = self.direction(problem, &progress.current, &mut progress.report)?;
+        progress.report.iterations += 1;
+        let before = norm(&progress.current.residual);
         let slope = dot(&direction, &balance.residual).abs();
-        *current = self.search(problem, current, &direction, slope)?;
-        let scale = self.force_scale(&current.y, &current.rates, problem.alpha);
-        let size = norm(&current.residual);
-        report.residual = if scale > 0.0 { size / scale } else { size };
-        Ok(size <= (self.settings.newton_tolerance * scale).max(self.rounding(&current.y)))
+        progress.current = self.search(problem, &progress.current, &direction, slope)?;
+        progress.keep_factors = norm(&progress.current.residual) < CONTRACTION * before;
+        let Iterate { y, rates, .. } = &progress.current;
+        progress.scale = self.force_scale(y, rates, problem.alpha);
+        Ok(self.converged(progress))
+    }
+
+    /// A full step in the direction that the last factors give; taken, and tried again, if it makes the residual much smaller.
+    fn step_with_old_factors(&mut self, problem: &StageProblem<'_>, progress: &mut Progress) -> Result<bool, Cause> {
+        let Progress { current, .. } = progress;
+        let direction = self.solve_for(&current.residual)?;
+        let trial = self.evaluate(problem, self.along(&current.y, &direction, 1.0));
+        progress.keep_factors = false;
+        let Ok(trial) = trial else { return Ok(false) };
+        if norm(&trial.residual) > CONTRACTION * norm(&current.residual) {
+            return Ok(false);
+        }
+        progress.keep_factors = true;
+        progress.current = trial;
+        Ok(true)
+    }
+
+    fn converged(&self, progress: &mut Progress) -> bool {
+        let size = norm(&progress.current.residual);
+        progress.report.residual = if progress.scale > 0.0 { size / progress.scale } else { size };
+        size <= (self.settings.newton_tolerance * progress.scale).max(self.rounding(&progress.current.y))
     }
 
     /// Newton direction at the current iterate.
@@ -113,10 +147,25 @@ impl System {
             .map_err(|e| self.matrix_failure(e))?;
         report.negative_pivots = factors.negative_pivots.unwrap_or(0);
         self.indefinite = report.negative_pivots > 0;
-        let mut direction: Vec<f64> = balance.residual.iter().map(|r| -r).collect();
+        let direction = self.solve_for(&balance.residual)?;
+        Ok((balance, direction))
+    }
+
+    /// Direction that the present factors give for a residual.
+    fn solve_for(&mut self, residual: &[f64]) -> Result<Vec<f64>, Cause> {
+        let mut direction: Vec<f64> = residual.iter().map(|r| -r).collect();
         let mut border = vec![0.0; self.functionals.len()];
         self.solver.solve(&mut direction, &mut border).map_err(|e| self.matrix_failure(e))?;
-        Ok((balance, direction))
+        Ok(direction)
+    }
+
+    /// Unknowns a part of the way along a direction of the equations.
+    fn along(&self, y: &[f64], direction: &[f64], length: f64) -> Vec<f64> {
+        let mut moved = y.to_vec();
+        for (&unknown, d) in self.free.iter().zip(direction) {
+            moved[unknown as usize] += length * d;
+        }
+        moved
     }
 
     /// Goes along the direction as far as |du . R| falls.
@@ -131,11 +180,7 @@ impl System {
         let mut best: Option<(f64, Iterate)> = None;
         let mut cause = Cause::NotFinite;
         for _ in 0..=HALVINGS {
-            let mut y = current.y.clone();
-            for (&unknown, d) in self.free.iter().zip(direction) {
-                y[unknown as usize] += length * d;
-            }
-            match self.evaluate(problem, y) {
+            match self.evaluate(problem, self.along(&current.y, direction, length)) {
                 Ok(trial) => {
                     let work = dot(direction, &trial.residual).abs();
                     let smaller = norm(&trial.residual) <= norm(&current.residual) * 1e-3;

@@ -180,6 +180,11 @@ impl Watcher {
         self.events[event].actions.iter().any(|action| !matches!(action, Action::Warn(_)))
     }
 
+    /// Whether a step must end where an event fires: where it acts, and where its condition turns true, since the solution may have a kink there.
+    pub fn cuts(&self, event: usize) -> bool {
+        self.acts(event) || matches!(self.watches[event], Watch::When(..))
+    }
+
     /// Next time at which a periodic event acts.
     pub fn next_act(&self) -> Option<f64> {
         let time = |(event, watch): (usize, &Watch)| match watch {

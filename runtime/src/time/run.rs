@@ -114,7 +114,7 @@ impl Run<'_> {
             Ok(proposal) => self.look(proposal),
             Err(error) => return Ok(Some(End::Diverged(Box::new(error)))),
         };
-        let seen = self.cut_at_action(seen);
+        let seen = self.cut_at_event(seen);
         let fired = self.take(seen)?;
         self.act(fired)
     }
@@ -135,9 +135,9 @@ impl Run<'_> {
         Seen { proposal, globals, watcher, fired }
     }
 
-    /// If an event acts inside the step, solves the step anew to end there.
-    fn cut_at_action(&mut self, seen: Seen) -> Seen {
-        let Some(&first) = seen.fired.iter().find(|f| self.watcher.acts(f.event)) else { return seen };
+    /// If an event acts or a condition turns true inside the step, solves the step anew to end there.
+    fn cut_at_event(&mut self, seen: Seen) -> Seen {
+        let Some(&first) = seen.fired.iter().find(|f| self.watcher.cuts(f.event)) else { return seen };
         let (start, end) = (self.march.last().time, seen.proposal.end.time);
         let until = first.time.max(start + SHORTEST_CUT * (end - start));
         if until >= end {
@@ -170,6 +170,9 @@ impl Run<'_> {
         let march = &self.march;
         let point = |time: f64| march.interpolate(&proposal, time);
         self.outputs.emit(self.system, &self.record, point, self.observer)?;
+        if fired.iter().any(|f| self.watcher.cuts(f.event)) {
+            self.record.corner();
+        }
         self.march.accept(proposal);
         Ok(fired)
     }

@@ -88,6 +88,6 @@ fn difference(a: Point, b: Point) -> Point {
 
 /// Unit vector to the right of a tangent: outward where the body is on the left.
 fn right_of(tangent: Point) -> Point {
-    let length = tangent[0].hypot(tangent[1]);
+    let length = dot(tangent, tangent).sqrt();
     [tangent[1] / length, -tangent[0] / length]
 }

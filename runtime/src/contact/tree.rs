@@ -41,7 +41,7 @@ impl Bounds {
 
     fn distance(self, point: Point) -> f64 {
         let [x, y] = [0, 1].map(|c| (self.lower[c] - point[c]).max(point[c] - self.upper[c]).max(0.0));
-        x.hypot(y)
+        (x * x + y * y).sqrt()
     }
 }
 

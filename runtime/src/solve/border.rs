@@ -218,7 +218,7 @@ impl BorderedSolver {
             Target::Solution => (&mut self.solution, &mut self.border_solution),
             Target::Residual => (&mut self.residual, &mut self.border_residual),
         };
-        self.sparse.solve(x)?;
+        self.sparse.solve_unchecked(x)?;
         subtract_transposed(&self.rows, x, y);
         self.schur.solve(y);
         subtract_product(&self.eliminated, y, x);

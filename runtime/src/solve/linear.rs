@@ -23,7 +23,7 @@ use unsymmetric::UnsymmetricFactor;
 /// Pivots of the scaled matrix below this are rounding errors: the matrix is singular.
 const SMALLEST_PIVOT: f64 = 64.0 * f64::EPSILON;
 /// Backward error above which a solution is refined.
-pub(super) const BACKWARD_ERROR: f64 = 16.0 * f64::EPSILON;
+pub(super) const BACKWARD_ERROR: f64 = 1e-13;
 /// Refinement steps at most.
 pub(super) const REFINEMENTS: usize = 2;
 

@@ -41,6 +41,8 @@ pub struct PairOn {
     reach: f64,
     margin: f64,
     positions: Vec<Point>,
+    /// The gaps are those of `positions`.
+    updated: bool,
 }
 
 /// Pairs of a program; `g` holds parameters and constants.
@@ -75,17 +77,24 @@ impl PairOn {
             search,
             margin: MARGIN * longest,
             positions: mesh.nodes.clone(),
+            updated: false,
         })
     }
 
-    /// Finds the gaps at the displacement in y.
+    /// Finds the gaps at the displacement in y; does nothing where they are known already.
     pub fn update(&mut self, mesh: &Mesh, unknowns: &Unknowns, y: &[f64]) {
         let field = &unknowns.fields[self.displacement];
+        let mut moved = !self.updated;
         for (k, &node) in field.nodes.iter().enumerate() {
             let u = &y[field.first + 2 * k..][..2];
             let x = mesh.nodes[node as usize];
-            self.positions[node as usize] = [x[0] + u[0], x[1] + u[1]];
+            let position = [x[0] + u[0], x[1] + u[1]];
+            moved |= std::mem::replace(&mut self.positions[node as usize], position) != position;
         }
+        if !moved {
+            return;
+        }
+        self.updated = true;
         self.sides.iter_mut().for_each(|side| side.pair.update(&self.positions));
     }
 

@@ -68,6 +68,8 @@ pub struct System {
     solver: BorderedSolver,
     /// Matrix values and one spare entry for what belongs to held unknowns.
     values: Vec<f64>,
+    /// The factors of the last stage, if they may serve the next one.
+    factored: Option<newton::Factored>,
     /// Place of each equation's diagonal entry in the values.
     diagonal: Vec<usize>,
     /// Typical edge length of a cell.
@@ -121,6 +123,7 @@ impl System {
             solver,
             values: Vec::new(),
             diagonal: Vec::new(),
+            factored: None,
             cell_size,
             indefinite: false,
         };
@@ -158,6 +161,7 @@ impl System {
             SparsePattern::from_elements(self.free.len(), self.kind, groups.iter().map(Vec::as_slice));
         self.solver = analyse(&self.pattern, self.functionals.len())?;
         self.values = vec![0.0; self.pattern.entries() + 1];
+        self.factored = None;
         let diagonal = (0..self.free.len() as u32).filter_map(|i| self.pattern.position(i, i));
         self.diagonal = diagonal.collect();
         for term in &mut self.terms {

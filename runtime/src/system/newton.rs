@@ -52,6 +52,14 @@ struct Iterate {
     residual: Vec<f64>,
 }
 
+/// What is known of the present factors when they may serve the next stage too.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Factored {
+    alpha: f64,
+    scale: f64,
+    negative_pivots: usize,
+}
+
 /// How far a stage is.
 struct Progress {
     current: Iterate,
@@ -71,13 +79,13 @@ impl System {
             Ok(iterate) => iterate,
             Err(cause) => return Err(self.failure(problem, cause, &NewtonReport::default(), None)),
         };
-        let mut progress =
-            Progress { current, scale: 0.0, keep_factors: false, report: NewtonReport::default() };
+        let mut progress = self.resume(problem, current);
         while progress.report.iterations < self.settings.newton_iterations {
             match self.iterate(problem, &mut progress) {
                 Ok(false) => {}
                 Ok(true) => {
                     y.copy_from_slice(&progress.current.y);
+                    self.remember(problem, &progress);
                     return Ok(progress.report);
                 }
                 Err(cause) => {
@@ -86,6 +94,29 @@ impl System {
             }
         }
         Err(self.failure(problem, Cause::NoConvergence, &progress.report, Some(&progress.current)))
+    }
+
+    /// Progress at the start of a stage. Where the last stage needed at most one tangent and had the same rates, its factors may still do.
+    fn resume(&self, problem: &StageProblem<'_>, current: Iterate) -> Progress {
+        let usable = self.factored.filter(|f| (f.alpha - problem.alpha).abs() <= 1e-9 * f.alpha);
+        Progress {
+            current,
+            scale: usable.map_or(0.0, |f| f.scale),
+            keep_factors: usable.is_some(),
+            report: NewtonReport {
+                negative_pivots: usable.map_or(0, |f| f.negative_pivots),
+                ..NewtonReport::default()
+            },
+        }
+    }
+
+    fn remember(&mut self, problem: &StageProblem<'_>, progress: &Progress) {
+        let NewtonReport { iterations, negative_pivots, .. } = progress.report;
+        self.factored = (iterations <= 1).then_some(Factored {
+            alpha: problem.alpha,
+            scale: progress.scale,
+            negative_pivots,
+        });
     }
 
     /// Steps with the present factors as long as they do, then one with a new tangent; true when converged.

@@ -2,6 +2,7 @@
 
 use super::ident;
 use super::kernel::{Emitter, count};
+use crate::kernel::entry_name;
 use crate::kernel::{FieldUse, Flux, Tangent};
 use crate::lower::{FieldInput, input_name};
 use proc_macro2::{Ident, TokenStream};
@@ -9,6 +10,9 @@ use quote::{format_ident, quote};
 
 /// Derivative of the flux of a test by a component of the trial node's unknown, and its name.
 type Slope = (FieldInput, usize, Ident);
+
+/// A tangent entry: its name, and its formula if it is computed at the place of the sums.
+type Entry = (Ident, Option<TokenStream>);
 
 impl Emitter<'_, '_> {
     /// `rows[first + unknown] += flux . basis` for all tests.
@@ -49,8 +53,9 @@ impl Emitter<'_, '_> {
     /// For every trial node: the derivatives of the fluxes by its unknowns, then their products with the test functions.
     pub(super) fn add_tangent(&mut self, tangent: &Tangent) -> TokenStream {
         let entries = self.entry_names(tangent);
-        let (names, values): (Vec<_>, Vec<_>) =
-            entries.iter().flatten().flatten().map(|(name, value)| (name, value)).unzip();
+        let computed =
+            entries.iter().flatten().flatten().filter_map(|(name, value)| Some((name, value.as_ref()?)));
+        let (names, values): (Vec<_>, Vec<_>) = computed.unzip();
         let columns = self.kernel.uses.iter().map(|trial| {
             let (code, slopes) = self.slopes(tangent, &entries, trial);
             let tests =
@@ -62,16 +67,19 @@ impl Emitter<'_, '_> {
         quote!(#(let #names = #values;)* #(#columns)*)
     }
 
-    /// A name and value for each entry; those above the diagonal of a symmetric matrix are those below it.
-    fn entry_names(&mut self, tangent: &Tangent) -> Vec<Vec<Option<(Ident, TokenStream)>>> {
+    /// A name for each entry, and its formula unless it is named already: entries above the diagonal of a symmetric matrix are those below.
+    fn entry_names(&mut self, tangent: &Tangent) -> Vec<Vec<Option<Entry>>> {
         let model = self.lowering.model;
-        let mut rows: Vec<Vec<Option<(Ident, TokenStream)>>> = Vec::new();
+        let mut rows: Vec<Vec<Option<Entry>>> = Vec::new();
         for (test, row) in tangent.tests.iter().zip(&tangent.entries) {
             let mut names = Vec::new();
             for (trial, entry) in tangent.trials.iter().zip(row) {
-                names.push(entry.map(|id| {
-                    let name = format!("d_{}_{}", input_name(model, *test), input_name(model, *trial));
-                    (self.names.unused(&name), self.value(id))
+                names.push(entry.map(|id| match self.names.statement_name(id) {
+                    Some(name) => (name, None),
+                    None => {
+                        let name = self.names.unused(&entry_name(model, *test, *trial));
+                        (name, Some(self.value(id)))
+                    }
                 }));
             }
             rows.push(names);
@@ -83,7 +91,7 @@ impl Emitter<'_, '_> {
     fn slopes(
         &self,
         tangent: &Tangent,
-        entries: &[Vec<Option<(Ident, TokenStream)>>],
+        entries: &[Vec<Option<Entry>>],
         trial: &FieldUse,
     ) -> (TokenStream, Vec<Slope>) {
         let (mut code, mut slopes) = (Vec::new(), Vec::new());

@@ -234,9 +234,12 @@ impl Printer<'_, '_> {
             _ => None,
         };
         let postfix = |id| self.bound(id, names, Binding::Postfix);
-        let negated = |id| {
-            let x = self.bound(id, names, Binding::Prefix);
-            quote!((-#x))
+        let negated = |id| match self.pool().as_constant(id) {
+            Some(value) => self.constant(-value).0,
+            None => {
+                let x = self.bound(id, names, Binding::Prefix);
+                quote!((-#x))
+            }
         };
         let formula = match (op, product(x), product(y)) {
             (Binary::Add, _, Some((a, b))) => {

@@ -37,9 +37,10 @@ pub fn rust(forms: &mut Forms<'_>, plan: &Plan, sources: &SourceMap) -> Result<S
     Ok(prettyplease::unparse(&file).replace(kernel::INVOCATION_AS_PRINTED, kernel::INVOCATION))
 }
 
-/// An identifier from a name of the model: other characters become underscores, words of Rust get one behind.
+/// An identifier from a name of the model: one underscore for whatever else stands between letters, one behind words of Rust.
 fn ident(name: &str) -> Ident {
-    let mut text: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    let words = name.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').filter(|word| !word.is_empty());
+    let mut text = words.collect::<Vec<_>>().join("_");
     if text.starts_with(|c: char| c.is_ascii_digit()) || text.is_empty() {
         text.insert(0, '_');
     }

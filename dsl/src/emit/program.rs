@@ -134,7 +134,7 @@ fn program(forms: &mut Forms<'_>, plan: &Plan, sources: &SourceMap) -> TokenStre
     let (solve, weight) = (geometry::solve(forms, &slots), geometry::weight(model));
     let constants = constants(forms, &slots);
     let geometry = geometry::geometry(forms, &slots);
-    let run_values = tests::run_values(forms, &slots);
+    let test_helpers = tests::helpers(forms, &slots);
     let (functions, basis) = (&emitted.functions, emitted.tables.tokens());
     let (helpers, no_variation) = (helpers::helpers(&plan.kernels()), emitted.no_variation());
     quote! {
@@ -161,7 +161,7 @@ fn program(forms: &mut Forms<'_>, plan: &Plan, sources: &SourceMap) -> TokenStre
             tests: #tests,
         };
         #geometry
-        #run_values
+        #test_helpers
         #(#functions)*
         #no_variation
         #helpers

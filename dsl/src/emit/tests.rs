@@ -1,6 +1,6 @@
 //! Tests that read a finished run.
 
-use super::body::{Sources, body, closure};
+use super::body::{Sources, block, body, closure};
 use super::expression::number;
 use super::layout::Slots;
 use super::place;
@@ -20,67 +20,108 @@ pub fn tests(forms: &mut Forms<'_>, slots: &Slots, sources: &SourceMap) -> Token
     quote!(&[#(#entries),*])
 }
 
-/// `fn run_values(record, g)`, if tests read any.
-pub fn run_values(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
-    let lowering = &mut forms.lowering;
+/// Functions that the tests share, if there are any: their verdicts, and the numbers of the run that they read.
+pub fn helpers(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
+    let expectations =
+        || forms.tests.iter().flat_map(|test| &test.expectations).map(|(_, expectation)| expectation);
+    let holds = expectations().any(|one| matches!(one, Expectation::Holds(_))).then(|| {
+        quote! {
+            /// Verdict on a condition.
+            fn holds(text: &'static str, place: &'static str, holds: bool) -> Expectation {
+                Expectation { text, place, numbers: None, holds }
+            }
+        }
+    });
+    let near = expectations().any(|one| matches!(one, Expectation::Near { .. })).then(|| {
+        quote! {
+            /// Verdict on a value, the value expected and the tolerance.
+            fn near(text: &'static str, place: &'static str, numbers: [f64; 3]) -> Expectation {
+                let [value, expected, tolerance] = numbers;
+                Expectation { text, place, numbers: Some(numbers), holds: (value - expected).abs() <= tolerance }
+            }
+        }
+    });
+    let run_values = run_values(&mut forms.lowering, slots);
+    quote!(#holds #near #run_values)
+}
+
+fn run_values(lowering: &mut Lowering<'_>, slots: &Slots) -> TokenStream {
     if lowering.run_values.is_empty() {
         return TokenStream::new();
     }
     let values = lowering.run_values.clone();
-    let values: Vec<TokenStream> = values.iter().map(|value| run_value(lowering, slots, value)).collect();
+    let (values, reads): (Vec<TokenStream>, Vec<bool>) =
+        values.iter().map(|value| run_value(lowering, slots, value)).unzip();
     let count = Literal::usize_unsuffixed(values.len());
+    let g = if reads.contains(&true) { quote!(g) } else { quote!(_) };
     quote! {
         /// Numbers of the run that the tests read.
-        fn run_values(record: &dyn Record, g: &[f64]) -> [f64; #count] {
-            let _ = g;
+        fn run_values(record: &dyn Record, #g: &[f64]) -> [f64; #count] {
             [#(#values),*]
         }
     }
 }
 
-fn run_value(lowering: &mut Lowering<'_>, slots: &Slots, value: &RunValue) -> TokenStream {
+/// The code of a number, and whether it reads the globals `g`.
+fn run_value(lowering: &mut Lowering<'_>, slots: &Slots, value: &RunValue) -> (TokenStream, bool) {
     let model = lowering.model;
+    let function = |of: TokenStream| quote!(let value: fn(&[f64]) -> f64 = #of;);
     match value {
         RunValue::Extreme(reduction, of, range) => {
-            let of = closure(lowering, slots, *of);
-            let times = range.map(|range| {
-                let body = body(lowering, slots, Sources::default(), &range);
+            let value = function(closure(lowering, slots, *of));
+            let range = range.map(|range| body(lowering, slots, Sources::default(), &range));
+            let reads = range.as_ref().is_some_and(|range| range.reads_globals);
+            let inside = range.map(|body| {
                 let (statements, from, to) = (&body.statements, &body.results[0], &body.results[1]);
                 let time = Literal::usize_unsuffixed(slots.slot(SymbolKind::Time));
-                quote!(let (from, to) = { #(#statements)* (#from, #to) }; let inside = |g: &&Vec<f64>| (from..=to).contains(&g[#time]);)
+                (
+                    quote!(#(#statements)* let range = #from..=#to;),
+                    quote!(.filter(|g| range.contains(&g[#time]))),
+                )
             });
-            let filter = times.as_ref().map(|_| quote!(.filter(inside)));
+            let (range, filter) = inside.unzip();
             let (fold, start) = match reduction {
                 Reduction::Min => (quote!(f64::min), number(f64::INFINITY)),
                 _ => (quote!(f64::max), number(f64::NEG_INFINITY)),
             };
-            quote!({ let value: fn(&[f64]) -> f64 = #of; #times record.steps().iter() #filter .map(|g| value(g)).fold(#start, #fold) })
+            (
+                quote!({ #value #range record.steps().iter() #filter .map(|g| value(g)).fold(#start, #fold) }),
+                reads,
+            )
         }
         RunValue::AtTime(of, time) => {
-            let (of, body) =
-                (closure(lowering, slots, *of), body(lowering, slots, Sources::default(), &[*time]));
-            let time = super::body::block(&body);
-            quote!({ let value: fn(&[f64]) -> f64 = #of; value(&record.at(#time)) })
+            let value = function(closure(lowering, slots, *of));
+            let body = body(lowering, slots, Sources::default(), &[*time]);
+            let time = block(&body);
+            (quote!({ #value value(&record.at(#time)) }), body.reads_globals)
         }
         RunValue::AtEvent(of, event) => {
-            let (of, name) = (closure(lowering, slots, *of), &model.events[event.0].name);
-            quote!({ let value: fn(&[f64]) -> f64 = #of; record.event_time(#name).map_or(f64::NAN, |t| value(&record.at(t))) })
+            let (value, name) = (function(closure(lowering, slots, *of)), &model.events[event.0].name);
+            (quote!({ #value record.event_time(#name).map_or(f64::NAN, |t| value(&record.at(t))) }), false)
         }
         RunValue::Fired(event) => {
             let name = &model.events[event.0].name;
-            quote!(f64::from(u8::from(record.event_time(#name).is_some())))
+            (quote!(f64::from(u8::from(record.event_time(#name).is_some()))), false)
         }
     }
 }
 
 fn one_test(lowering: &mut Lowering<'_>, slots: &Slots, sources: &SourceMap, test: &RunTest) -> TokenStream {
     let title = &test.title;
-    let reads_run = !lowering.run_values.is_empty();
-    let run = reads_run.then(|| quote!(let run = run_values(record, g);));
+    let run = (!lowering.run_values.is_empty()).then(|| quote!(let run = run_values(record, g);));
     let expectations = test.expectations.iter().map(|(span, expectation)| {
         let (text, place) = (sources.slice(*span).trim(), place(sources, *span));
-        let (numbers, holds) = expectation_code(lowering, slots, expectation);
-        quote!({ let (numbers, holds) = { #numbers #holds }; Expectation { text: #text, place: #place, numbers, holds } })
+        let roots = expectation.roots();
+        let body = body(lowering, slots, Sources::default(), &roots);
+        let (statements, results) = (&body.statements, &body.results);
+        let verdict = match expectation {
+            Expectation::Holds(condition) => {
+                let truth = truth(condition, &roots, results);
+                quote!(holds(#text, #place, #truth))
+            }
+            Expectation::Near { .. } => quote!(near(#text, #place, [#(#results),*])),
+        };
+        if statements.is_empty() { verdict } else { quote!({ #(#statements)* #verdict }) }
     });
     let expectations: Vec<TokenStream> = expectations.collect();
     quote!(Test {
@@ -91,30 +132,6 @@ fn one_test(lowering: &mut Lowering<'_>, slots: &Slots, sources: &SourceMap, tes
             Vec::from([#(#expectations),*])
         },
     })
-}
-
-/// Statements, and `(numbers, holds)`.
-fn expectation_code(
-    lowering: &mut Lowering<'_>,
-    slots: &Slots,
-    expectation: &Expectation,
-) -> (TokenStream, TokenStream) {
-    let roots = expectation.roots();
-    let body = body(lowering, slots, Sources::default(), &roots);
-    let (statements, results) = (&body.statements, &body.results);
-    let code = quote!(#(#statements)*);
-    match expectation {
-        Expectation::Holds(condition) => {
-            let holds = truth(condition, &roots, results);
-            (code, quote!((None, #holds)))
-        }
-        Expectation::Near { percent, .. } => {
-            let (value, expected, tolerance) = (&results[0], &results[1], &results[2]);
-            let scale = percent.then(|| quote!(*0.01 * expected.abs()));
-            let code = quote!(#code let (value, expected): (f64, f64) = (#value, #expected); let tolerance = #tolerance #scale;);
-            (code, quote!((Some([value, expected, tolerance]), (value - expected).abs() <= tolerance)))
-        }
-    }
 }
 
 fn truth(condition: &Condition, roots: &[Id], results: &[TokenStream]) -> TokenStream {

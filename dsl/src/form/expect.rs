@@ -21,8 +21,8 @@ pub struct RunTest {
 pub enum Expectation {
     /// A condition.
     Holds(Condition),
-    /// Two numbers that agree within a tolerance, absolute or in percent of the expected one.
-    Near { value: Id, expected: Id, tolerance: Id, percent: bool },
+    /// Two numbers that agree within an absolute tolerance.
+    Near { value: Id, expected: Id, tolerance: Id },
 }
 
 impl RunTest {
@@ -37,7 +37,7 @@ impl Expectation {
     pub fn roots(&self) -> Vec<Id> {
         match self {
             Expectation::Holds(condition) => condition.scalars(),
-            Expectation::Near { value, expected, tolerance, .. } => vec![*value, *expected, *tolerance],
+            Expectation::Near { value, expected, tolerance } => vec![*value, *expected, *tolerance],
         }
     }
 }
@@ -69,9 +69,12 @@ fn lower_test<'m>(lowering: &mut Lowering<'m>, test: &'m model::Test) -> Lowered
             }
             Check::Near { value, expected, tolerance, percent, span } => {
                 let (value, expected) = (lowering.global_scalar(value)?, lowering.global_scalar(expected)?);
-                let tolerance = lowering.global_scalar(tolerance)?;
-                expectations
-                    .push((*span, Expectation::Near { value, expected, tolerance, percent: *percent }));
+                let mut tolerance = lowering.global_scalar(tolerance)?;
+                if *percent {
+                    let (hundredth, size) = (lowering.pool.constant(0.01), lowering.pool.abs(expected));
+                    tolerance = lowering.pool.product([tolerance, hundredth, size]);
+                }
+                expectations.push((*span, Expectation::Near { value, expected, tolerance }));
             }
         }
     }

@@ -3,11 +3,12 @@
 //!
 //! - `vary`: the rule of variation; every energy, load and weak form becomes a [`Term`].
 //! - `physics`: the statements of the blocks.
-//! - `states`: equations of states.
+//! - `states`: equations of states; `balance`: those that energies give.
 //! - `observe`: which scalars are rows of the system (functionals) and which are only looked at (observables).
 //! - `settings`: what depends on parameters alone.
 //! - `output`, `event`, `expect`: tables, frames, events, run-time tests.
 
+mod balance;
 mod degree;
 mod event;
 mod expect;

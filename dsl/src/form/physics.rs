@@ -1,5 +1,6 @@
 //! The statements of the physics blocks.
 
+use super::balance::{Balances, state_slopes};
 use super::vary::{Origin, Term, Variation, linearise};
 use super::{Builder, Contact, Coupling, Hold};
 use crate::derive;
@@ -15,20 +16,22 @@ pub(super) struct Physics {
     pub(super) holds: Vec<Hold>,
     pub(super) contacts: Vec<Contact>,
     pub(super) couplings: Vec<Coupling>,
-    /// Left minus right side of each equation.
+    /// Left minus right side of each equation, then the balances of states without one.
     pub(super) differences: Vec<(Id, Span)>,
+    balances: Balances,
 }
 
 impl<'m> Builder<'m> {
     /// Lowers and varies all statements.
     pub(super) fn physics(&mut self) -> Physics {
-        let mut physics = Physics::default();
+        let mut physics = Physics { balances: Balances::new(self.lowering.model), ..Physics::default() };
         for (b, block) in self.lowering.model.blocks.iter().enumerate() {
             for statement in &block.statements {
                 self.lowering.name_after(&block.name);
                 self.attempt(|lowering| physics.statement(lowering, BlockId(b), statement));
             }
         }
+        physics.differences.extend(std::mem::take(&mut physics.balances).finish());
         physics
     }
 }
@@ -55,17 +58,7 @@ impl Physics {
                     Ok(Variation::of_density(lowering, density))
                 }),
             },
-            StatementKind::Energy(energy, None) => {
-                let energy = lowering.global_scalar(energy)?;
-                let slopes = quantity_slopes(lowering, &[energy]);
-                self.couplings.extend(slopes.into_iter().map(|(quantity, slopes)| Coupling {
-                    block,
-                    quantity,
-                    coefficient: slopes[0],
-                    span,
-                }));
-                Ok(())
-            }
+            StatementKind::Energy(energy, None) => self.lumped_energy(lowering, block, energy, span),
             StatementKind::Residual(residual, domain) => {
                 self.integral(lowering, (block, "residual", span), domain, |lowering| {
                     let residual = lowering.scalar_here(residual)?;
@@ -105,12 +98,32 @@ impl Physics {
             if variation.is_zero() {
                 continue;
             }
+            for &(state, density) in &variation.states {
+                self.balances.add_density(lowering, state, (&region, density), span);
+            }
             let name = format!("{} {kind}", lowering.model.blocks[block.0].name);
             let term = linearise(lowering, Origin { name, block: Some(block), span }, region, variation);
             check(lowering, &term)?;
             if !term.tests.is_empty() {
                 self.terms.push(term);
             }
+        }
+        Ok(())
+    }
+
+    fn lumped_energy<'m>(
+        &mut self,
+        lowering: &mut Lowering<'m>,
+        block: BlockId,
+        energy: &'m Expr,
+        span: Span,
+    ) -> Lowered<()> {
+        let energy = lowering.global_scalar(energy)?;
+        for (quantity, slopes) in quantity_slopes(lowering, &[energy]) {
+            self.couplings.push(Coupling { block, quantity, coefficient: slopes[0], span });
+        }
+        for (state, slopes) in state_slopes(lowering, &[energy]) {
+            self.balances.add(lowering, state, slopes[0]);
         }
         Ok(())
     }
@@ -129,6 +142,11 @@ impl Physics {
             let work = lowering.pool.dot(&with, &slopes);
             let coefficient = lowering.pool.neg(work);
             self.couplings.push(Coupling { block, quantity, coefficient, span });
+        }
+        for (state, slopes) in state_slopes(lowering, &of) {
+            let work = lowering.pool.dot(&with, &slopes);
+            let slope = lowering.pool.neg(work);
+            self.balances.add(lowering, state, slope);
         }
         Ok(())
     }

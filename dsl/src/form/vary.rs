@@ -6,10 +6,11 @@
 
 use std::collections::BTreeSet;
 
+use super::balance::state_slopes;
 use super::degree::quadrature_degree;
 use crate::derive::{self, Symmetry, is_symmetric};
 use crate::lower::{FieldInput, Lowering, Region, SymbolKind};
-use crate::model::{BlockId, FieldId};
+use crate::model::{BlockId, FieldId, StateId};
 use crate::scalar::{Id, Symbol, substitute, symbols_of};
 use crate::source::Span;
 
@@ -52,6 +53,8 @@ pub(super) struct Variation {
     is_gradient: bool,
     pub(super) tests: Vec<FieldInput>,
     pub(super) flux: Vec<Id>,
+    /// Density of the derivative by each state.
+    pub(super) states: Vec<(StateId, Id)>,
 }
 
 impl Variation {
@@ -65,7 +68,11 @@ impl Variation {
         let is_gradient = !symbols_of(&lowering.pool, &[density]).into_iter().any(|symbol| {
             matches!(lowering.symbols.kind(symbol), SymbolKind::Frozen(_) | SymbolKind::FieldRate(_))
         });
-        Variation { value: Some(density), is_gradient, tests, flux }.cleaned(lowering)
+        let states = state_slopes(lowering, &[density])
+            .into_iter()
+            .map(|(state, slopes)| (state, slopes[0]))
+            .collect();
+        Variation { value: Some(density), is_gradient, tests, flux, states }.cleaned(lowering)
     }
 
     /// Of the virtual work `-f . delta q`. Time derivatives in `q` are varied like what they are derivatives of (virtual power).
@@ -83,6 +90,10 @@ impl Variation {
                 variation.add(lowering, test, flux);
             }
         }
+        for (state, slopes) in state_slopes(lowering, quantity) {
+            let work = lowering.pool.dot(load, &slopes);
+            variation.states.push((state, lowering.pool.neg(work)));
+        }
         variation.cleaned(lowering)
     }
 
@@ -98,7 +109,7 @@ impl Variation {
 
     /// Whether nothing is left of it.
     pub(super) fn is_zero(&self) -> bool {
-        self.tests.is_empty() && self.value.is_none()
+        self.tests.is_empty() && self.value.is_none() && self.states.is_empty()
     }
 
     fn add(&mut self, lowering: &mut Lowering<'_>, test: FieldInput, flux: Id) {
@@ -141,7 +152,7 @@ pub(super) fn linearise(
     region: Region,
     variation: Variation,
 ) -> Term {
-    let Variation { value, is_gradient, tests, flux } = variation;
+    let Variation { value, is_gradient, tests, flux, .. } = variation;
     let (trials, tangent) = match value.filter(|_| is_gradient) {
         Some(value) => hessian(lowering, value, &tests),
         None => tangent(lowering, &flux),

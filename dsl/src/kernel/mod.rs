@@ -13,8 +13,8 @@ pub mod print;
 mod tests;
 
 use crate::form::Term;
-use crate::lower::{FieldInput, Lowering, Region, SymbolKind};
-use crate::model::{FieldId, Frame, Shape, Space};
+use crate::lower::{FieldInput, Lowering, Region, SymbolKind, input_name};
+use crate::model::{FieldId, Frame, Model, Shape, Space};
 use crate::scalar::schedule::{Schedule, Stage};
 use crate::scalar::{Id, lower_powers, symbols_of};
 use ansatz_elements::{Cell, Element, Quadrature, quadrature};
@@ -169,6 +169,11 @@ impl Kernel {
     }
 }
 
+/// Name of a tangent entry, such as `d_u_r_du_r_dz`.
+pub fn entry_name(model: &Model, test: FieldInput, trial: FieldInput) -> String {
+    format!("d_{}_{}", input_name(model, test), input_name(model, trial))
+}
+
 /// The kernels of one term.
 #[derive(Debug)]
 pub struct Kernels {
@@ -224,7 +229,7 @@ pub fn kernels(lowering: &mut Lowering<'_>, term: &Term, name: &str) -> Kernels 
         let kinds = term.globals.iter().map(|(kind, _)| *kind).collect();
         (kinds, make(lowering, "global_tangent", Job::Columns(columns)))
     });
-    let residual = Some(make(lowering, "residual", Job::Residual(flux)));
+    let residual = Some(make(lowering, "variation", Job::Residual(flux)));
     Kernels { value, residual, tangent, columns }
 }
 
@@ -236,6 +241,9 @@ fn mirrored(entries: &[Vec<Option<Id>>]) -> Vec<Vec<Option<Id>>> {
 
 fn build(lowering: &mut Lowering<'_>, term: &Term, name: String, job: Job) -> Kernel {
     let job = with_lowered_powers(lowering, job);
+    if let Job::Tangent(_, tangent) = &job {
+        hint_entries(lowering, tangent);
+    }
     let roots = job.roots();
     let symbols = &lowering.symbols;
     let schedule = Schedule::new(&lowering.pool, &roots, &|symbol| stage_of(symbols.kind(symbol)));
@@ -265,6 +273,18 @@ fn build(lowering: &mut Lowering<'_>, term: &Term, name: String, job: Job) -> Ke
         coordinates,
         job,
         schedule,
+    }
+}
+
+/// Names the entries of a tangent, of symmetric ones those below the diagonal.
+fn hint_entries(lowering: &mut Lowering<'_>, tangent: &Tangent) {
+    for (i, row) in tangent.entries.iter().enumerate() {
+        for (j, entry) in row.iter().enumerate().filter(|(j, _)| !tangent.symmetric || *j <= i) {
+            if let Some(id) = entry {
+                let name = entry_name(lowering.model, tangent.tests[i], tangent.trials[j]);
+                lowering.hints.entry(*id).or_insert(name);
+            }
+        }
     }
 }
 

@@ -174,6 +174,11 @@ impl<'m> Lowering<'m> {
         self.naming = name.to_owned();
     }
 
+    /// What quantities are named after.
+    fn naming(&self) -> &str {
+        &self.naming
+    }
+
     /// The value of a symbol with this meaning.
     pub fn input(&mut self, kind: SymbolKind) -> Id {
         let symbol = self.symbols.symbol(kind);

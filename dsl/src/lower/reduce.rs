@@ -52,9 +52,12 @@ impl<'m> Lowering<'m> {
             ExprKind::AtPoint(of, point) => self.at_point(of, point, expr),
             ExprKind::Force(block, domain) => {
                 let field = self.field_of_force(&domain.pieces, domain.span)?;
-                let mut component =
-                    |k| self.quantity(QuantityKind::Force(*block, domain.pieces.clone(), field, k), expr);
-                let pair = [component(0), component(1)];
+                let whole = self.naming().to_owned();
+                let pair = [0, 1].map(|k| {
+                    self.name_after(&format!("{whole}_{}", self.model.coordinates.names[k]));
+                    self.quantity(QuantityKind::Force(*block, domain.pieces.clone(), field, k), expr)
+                });
+                self.name_after(&whole);
                 Ok(self.in_plane(pair))
             }
             _ => Err(internal(expr.span, "no reduction")),

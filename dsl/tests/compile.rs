@@ -1,0 +1,154 @@
+//! Claims about the compiler as a whole: what it emits, what it refuses, that it says the same twice.
+
+use ansatz_dsl::compile::{Compilation, Output, compile};
+use ansatz_dsl::diagnostic::render;
+
+/// The dry model, as it ships.
+const DRY: &str = include_str!("../../models/dry/model.ansatz");
+
+fn compiled(name: &str, text: &str) -> Compilation {
+    compile(name, text, &mut |path, _| Err(format!("no file {path}")))
+}
+
+fn output(name: &str, text: &str) -> Output {
+    let compilation = compiled(name, text);
+    let report = render(&compilation.diagnostics, &compilation.sources);
+    compilation.output.unwrap_or_else(|| panic!("{report}"))
+}
+
+/// Codes of the diagnostics of a model on the unit square with these items.
+fn codes(items: &str) -> Vec<&'static str> {
+    compiled("test.ansatz", &on_square(items)).diagnostics.iter().map(|d| d.code.id()).collect()
+}
+
+fn on_square(items: &str) -> String {
+    format!(
+        "model square;\ncoordinates plane_strain(x, y);\nunits m, s, kg;\n\
+         geometry {{ path rim = from (0, 0) line bottom to (1 m, 0) line right to (1 m, 1 m) line top to (0, 1 m) line left to (0, 0);\n\
+         region square = loop(rim); }}\nmesh {{ size = 1 m; }}\nsolve {{ nonlinear = newton(tolerance: 1e-8, iterations: 15); }}\n{items}\n"
+    )
+}
+
+/// One function of an emitted module.
+fn function<'a>(rust: &'a str, name: &str) -> &'a str {
+    let start = rust.find(&format!("    fn {name}(")).expect("the function is emitted");
+    let end = rust[start..].find("\n    }\n").expect("it ends");
+    &rust[start..start + end + 6]
+}
+
+#[test]
+fn the_same_text_gives_the_same_bytes() {
+    let (first, second) = (output("model.ansatz", DRY), output("model.ansatz", DRY));
+    for stage in first.stage_names() {
+        assert_eq!(first.stage(stage), second.stage(stage), "{stage}");
+    }
+}
+
+#[test]
+fn the_dry_model_compiles_without_a_word_and_its_laws_hold() {
+    let compilation = compiled("model.ansatz", DRY);
+    assert_eq!(render(&compilation.diagnostics, &compilation.sources), "");
+    let laws = compilation.output.unwrap().law_tests;
+    assert_eq!(laws.failed, 0, "{}", laws.text);
+    assert!(laws.text.contains("301 of 301 hold"), "{}", laws.text);
+}
+
+#[test]
+fn dry_costs() {
+    insta::assert_snapshot!(output("model.ansatz", DRY).stage("cost").unwrap());
+}
+
+#[test]
+fn dry_tangent_kernel() {
+    insta::assert_snapshot!(function(&output("model.ansatz", DRY).rust, "elasticity_energy_tangent"));
+}
+
+/// A plate that a thermostat heats with a delay: a field, a state, a functional, every kind of output.
+const PLATE: &str = "/// temperature of the plate\n\
+    field T: Temperature in P1 on square = 300 K;\n\
+    state p: Power = 0 W;\n\
+    param k = 2 [W/(m*K)] in 0.1 [W/(m*K)] .. 100 [W/(m*K)];\nparam c = 1000 [J/(m^3*K)];\nparam delay = 10 s;\n\
+    let middle = mean(T on square);\n\
+    physics heat { residual c*test(T)*dt(T) + k*dot(grad(T), grad(test(T))) on square; residual -test(T)*p/area(rim.left) on rim.left; hold T = 300 K on rim.right; }\n\
+    physics thermostat { delay*dt(p) == max(0, 5 [W/K]*(320 K - middle)) - p; }\n\
+    event warm when middle > 310 K => stop;\n\
+    test \"it gets warm\" { expect outcome == warm; expect max(p on run) ~= 100 W within 10 %; }";
+
+fn plate() -> String {
+    on_square(PLATE).replace(
+        "solve {",
+        "solve { time = 0 s .. 100 s; step = sdirk2(max: 1 s, min: 1e-3 s, tolerance: 1e-4);",
+    ) + "output { fields on square every 1 s: T, flux = -k*grad(T); table \"heat.csv\" every step: t, p, middle as [K], hottest = max(T on rim.left), T@(0.5 m, 0.5 m); }\n"
+}
+
+#[test]
+fn a_small_model_at_every_stage() {
+    let output = output("plate.ansatz", &plate());
+    for stage in output.stage_names() {
+        insta::assert_snapshot!(format!("plate_{stage}"), output.stage(stage).unwrap());
+    }
+}
+
+#[test]
+fn what_kernels_cannot_do_is_refused_by_name() {
+    let field = "field u: Vector[Length] in P2 on square = 0; field h: Length in P1 on square = 0; param q = 1 Pa;\n\
+                 physics rest { energy q*(dot(u, u) + h^2)/(1 m^2) on square; }\n";
+    let refused = |items: &str| codes(&format!("{field}{items}"));
+    assert_eq!(refused("physics p { energy q*(1 m)*grad(h).x on rim; }"), ["X901"], "gradients on edges");
+    assert_eq!(
+        refused("physics p { energy q*mean(h on square)*h/(1 m^2) on square; }"),
+        ["X901"],
+        "energies of means"
+    );
+    assert_eq!(
+        refused("state s: Length ~ 0; physics p { s == mean(dt(h) on square)*(1 s); }"),
+        ["X901"],
+        "rates inside functionals"
+    );
+    assert_eq!(
+        refused("physics p { energy q*div(grad(h))^2*(1 m^2) on square; }"),
+        ["X901"],
+        "second derivatives"
+    );
+}
+
+#[test]
+fn geometries_are_built_with_the_default_parameters() {
+    let text = on_square("")
+        .replace("to (0, 1 m)", "to (0.5 m, 1 m)")
+        .replace("left to (0, 0)", "left to (0.1 m, 0.2 m)");
+    let compilation = compiled("test.ansatz", &text);
+    let codes: Vec<_> = compilation.diagnostics.iter().map(|d| d.code.id()).collect();
+    assert_eq!(codes, ["G301"], "{}", render(&compilation.diagnostics, &compilation.sources));
+}
+
+#[test]
+fn defaults_lie_within_their_ranges() {
+    assert_eq!(codes("param r = 3 m in 4 m .. 5 m;"), ["G304"]);
+    assert_eq!(codes("param r = 3 m in {1, 2} m;"), ["G304"]);
+    assert_eq!(codes("param s = 2 m; param r = 3 m in 0 m .. 2*s;"), Vec::<&str>::new());
+}
+
+#[test]
+fn the_pieces_of_a_match_meet() {
+    let law = |second: &str, promise: &str| {
+        codes(&format!(
+            "fn f(x: Length) -> Length = match x {{ < 1 m => x, < 2 m => {second}, else => 3*x - 4 m }} {promise};\nlet value = f(1 m);"
+        ))
+    };
+    assert_eq!(law("2*x - 1 m", ""), ["T402"], "2 x - 1 is 3 at the bound 2, where 3 x - 4 is 2");
+    assert_eq!(law("x", ""), Vec::<&str>::new());
+    assert_eq!(law("x", "C1"), ["T402"], "the slope turns from 1 to 3");
+    assert_eq!(law("2*x - 1 m", "jumps"), Vec::<&str>::new());
+}
+
+#[test]
+fn a_test_that_fails_warns_with_the_numbers() {
+    let compilation = compiled("test.ansatz", &on_square("test \"two\" { expect 1 + 1 ~= 3 within 10 %; }"));
+    assert_eq!(compilation.output.unwrap().law_tests.failed, 1);
+    assert!(
+        compilation.diagnostics[0].message.contains("found 2e0, expected 3e0"),
+        "{}",
+        compilation.diagnostics[0].message
+    );
+}

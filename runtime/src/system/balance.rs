@@ -2,6 +2,7 @@
 
 use super::System;
 use super::newton::StageProblem;
+use super::observables::ObservableOn;
 use super::states::Stage as StateStage;
 use super::terms::At;
 use super::unknowns::NONE;
@@ -246,13 +247,17 @@ impl System {
         self.g.clone()
     }
 
-    fn evaluate_observable(&mut self, observable: &mut super::ObservableOn, y: &[f64], rates: &[f64]) -> f64 {
-        if let super::ObservableOn::Force { block, unknowns } = observable {
-            let residual = self.unknown_residual(y, rates, 0.0, Some(*block));
-            return -unknowns.iter().map(|&u| residual[u]).sum::<f64>();
+    fn evaluate_observable(&mut self, observable: &mut ObservableOn, y: &[f64], rates: &[f64]) -> f64 {
+        match observable {
+            ObservableOn::Value(value) => {
+                let at = At { y, rates, g: &self.g, alpha: 0.0 };
+                value.evaluate(&self.mesh, &self.unknowns, &self.pairs, at)
+            }
+            ObservableOn::Force { block, unknowns } => {
+                let residual = self.unknown_residual(y, rates, 0.0, Some(*block));
+                -unknowns.iter().map(|&u| residual[u]).sum::<f64>()
+            }
         }
-        let at = At { y, rates, g: &self.g, alpha: 0.0 };
-        observable.evaluate(&self.mesh, &self.unknowns, &self.pairs, at)
     }
 }
 

@@ -33,6 +33,7 @@ use crate::generated::{Program, Solve};
 use crate::mesh::Mesh;
 use crate::solve::border::BorderedSolver;
 use crate::solve::sparse::{MatrixKind, SparsePattern};
+use crate::time::control::with_step_bounds;
 use contact::PairOn;
 use functionals::FunctionalOn;
 use observables::ObservableOn;
@@ -106,7 +107,7 @@ impl System {
         let cell_size = (mesh.cells.len().max(1) as f64).recip().sqrt() * mesh_extent(&mesh);
         let mut system = Self {
             program,
-            settings: (program.solve)(&g),
+            settings: with_step_bounds((program.solve)(&g)),
             mesh,
             unknowns,
             g,

@@ -10,6 +10,19 @@ use crate::mesh::Mesh;
 
 /// An observable on a mesh.
 pub enum ObservableOn {
+    /// Follows from the unknowns alone.
+    Value(Value),
+    /// Resultant of a block: minus the sum of its residual over these unknowns.
+    Force {
+        /// Physics block.
+        block: usize,
+        /// Unknowns.
+        unknowns: Vec<usize>,
+    },
+}
+
+/// An observable that needs no assembly.
+pub enum Value {
     /// Sum of integrals.
     Integrals(Vec<Term>),
     /// Smallest (sign 1) or largest (sign -1) of sampled values.
@@ -30,13 +43,6 @@ pub enum ObservableOn {
         /// f.
         function: fn(f64, &[f64]) -> f64,
     },
-    /// Minus the sum of a block's residual over unknowns.
-    Force {
-        /// Physics block.
-        block: usize,
-        /// Unknowns.
-        unknowns: Vec<usize>,
-    },
 }
 
 impl ObservableOn {
@@ -48,29 +54,29 @@ impl ObservableOn {
         g: &[f64],
     ) -> Result<Self, Error> {
         let extreme =
-            |sign, function, places| Self::Extreme { sign, sampler: Sampler::new(function, mesh), places };
-        Ok(match &observable.kind {
-            ObservableKind::Integral(integrals) => Self::Integrals(
+            |sign, function, places| Value::Extreme { sign, sampler: Sampler::new(function, mesh), places };
+        let gap = |sign, pair, function| Value::Gap { sign, pair, function };
+        Ok(Self::Value(match &observable.kind {
+            ObservableKind::Force { block, domain, field, component } => {
+                let nodes = domain_nodes(mesh, *domain)?;
+                let unknown = |node: u32| unknowns.fields[*field].unknown(node as usize, *component);
+                let unknowns = nodes.into_iter().filter_map(unknown).collect();
+                return Ok(Self::Force { block: *block, unknowns });
+            }
+            ObservableKind::Integral(integrals) => Value::Integrals(
                 integrals.iter().map(|i| Term::new(i, mesh, unknowns)).collect::<Result<_, _>>()?,
             ),
             ObservableKind::Min(domain, function) => extreme(1.0, function, node_places(mesh, *domain)?),
             ObservableKind::Max(domain, function) => extreme(-1.0, function, node_places(mesh, *domain)?),
             ObservableKind::Point(at, function) => extreme(1.0, function, vec![locate(mesh, at(g))?]),
-            ObservableKind::PairMin(pair, function) => {
-                Self::Gap { sign: 1.0, pair: *pair, function: *function }
-            }
-            ObservableKind::PairMax(pair, function) => {
-                Self::Gap { sign: -1.0, pair: *pair, function: *function }
-            }
-            ObservableKind::Force { block, domain, field, component } => {
-                let nodes = domain_nodes(mesh, *domain)?;
-                let unknown = |node: u32| unknowns.fields[*field].unknown(node as usize, *component);
-                Self::Force { block: *block, unknowns: nodes.into_iter().filter_map(unknown).collect() }
-            }
-        })
+            ObservableKind::PairMin(pair, function) => gap(1.0, *pair, *function),
+            ObservableKind::PairMax(pair, function) => gap(-1.0, *pair, *function),
+        }))
     }
+}
 
-    /// Its value, except for a force, whose residual the system assembles.
+impl Value {
+    /// The value at these unknowns and the gaps of the pairs' last update.
     pub fn evaluate(&mut self, mesh: &Mesh, unknowns: &Unknowns, pairs: &[PairOn], at: At<'_>) -> f64 {
         match self {
             Self::Integrals(terms) => terms.iter_mut().map(|t| t.value(at)).sum(),
@@ -87,7 +93,6 @@ impl ObservableOn {
                 let gaps = pairs[*pair].gaps();
                 *sign * gaps.map(|gap| *sign * function(gap, at.g)).fold(f64::INFINITY, f64::min)
             }
-            Self::Force { .. } => f64::NAN,
         }
     }
 }

@@ -24,7 +24,12 @@ pub fn expand(model: &Path, stage: &str) -> Outcome {
     let output = output(&compilation)?;
     match output.stage(stage) {
         Some(text) => say(text),
-        None => return Err(format!("error: there is no stage `{stage}`; the stages are {}", output.stage_names().join(", "))),
+        None => {
+            return Err(format!(
+                "error: there is no stage `{stage}`; the stages are {}",
+                output.stage_names().join(", ")
+            ));
+        }
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -41,7 +46,11 @@ pub fn run(model: &Path, arguments: &[String]) -> Outcome {
 pub fn build(model: &Path, to: &Path) -> Outcome {
     let program = build_simulator(model)?;
     std::fs::copy(&program, to).map_err(|e| format!("error: cannot write `{}`: {e}", to.display()))?;
-    say(&format!("{}: a simulator that needs neither Rust nor the model; try `{} --help`", to.display(), to.display()));
+    say(&format!(
+        "{}: a simulator that needs neither Rust nor the model; try `{} --help`",
+        to.display(),
+        to.display()
+    ));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -81,7 +90,9 @@ fn output(compilation: &Compilation) -> Result<&Output, String> {
 
 /// Eight hexadecimal digits of a text (FNV-1a).
 fn fingerprint(text: &str) -> String {
-    let hash = text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
+    let hash = text
+        .bytes()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
     format!("{:08x}", hash >> 32)
 }
 

@@ -13,7 +13,10 @@ pub fn model_file(path: &Path) -> PathBuf {
 pub fn compile_file(path: &Path) -> Result<Compilation, String> {
     let file = model_file(path);
     let text = std::fs::read_to_string(&file).map_err(|e| {
-        format!("error: cannot read the model `{}`: {e}; name a model file or a folder with a `model.ansatz`", file.display())
+        format!(
+            "error: cannot read the model `{}`: {e}; name a model file or a folder with a `model.ansatz`",
+            file.display()
+        )
     })?;
     Ok(compile(&file.display().to_string(), &text, &mut load))
 }

@@ -64,7 +64,9 @@ enum Command {
 fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Check { model } => commands::check(&model),
-        Command::Expand { model, stage, cost } => commands::expand(&model, if cost { "cost" } else { &stage }),
+        Command::Expand { model, stage, cost } => {
+            commands::expand(&model, if cost { "cost" } else { &stage })
+        }
         Command::Run { model, arguments } => commands::run(&model, &arguments),
         Command::Build { model, output } => commands::build(&model, &output),
         Command::Test { model, arguments } => commands::test(&model, &arguments),

@@ -21,9 +21,12 @@ pub fn build(name: &str, identity: &str, rust: &str) -> Result<PathBuf, String> 
     let runtime = home.join("runtime");
     if !runtime.join("Cargo.toml").exists() {
         let place = runtime.display();
-        return Err(format!("error: the runtime is not at `{place}`; set ANSATZ_HOME to the folder of the Ansatz sources"));
+        return Err(format!(
+            "error: the runtime is not at `{place}`; set ANSATZ_HOME to the folder of the Ansatz sources"
+        ));
     }
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| home.join("target"), PathBuf::from);
+    let target = std::path::absolute(&target).unwrap_or(target);
     let package = format!("{}-{identity}", name.replace('_', "-"));
     let folder = target.join("simulators").join(&package);
     write_project(&folder, &package, &runtime, rust)?;
@@ -34,10 +37,16 @@ pub fn build(name: &str, identity: &str, rust: &str) -> Result<PathBuf, String> 
         .arg(folder.join("Cargo.toml"))
         .arg("--target-dir")
         .arg(&target)
+        .current_dir(&home) // the toolchain that the sources name
         .status()
-        .map_err(|e| format!("error: cannot start `cargo`: {e}; a Rust toolchain is needed to build a simulator"))?;
+        .map_err(|e| {
+            format!("error: cannot start `cargo`: {e}; a Rust toolchain is needed to build a simulator")
+        })?;
     if !status.success() {
-        return Err(format!("error: the simulator in `{}` did not build; its errors stand above", folder.display()));
+        return Err(format!(
+            "error: the simulator in `{}` did not build; its errors stand above",
+            folder.display()
+        ));
     }
     Ok(target.join("release").join(&package))
 }

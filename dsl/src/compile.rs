@@ -2,11 +2,11 @@
 //!
 //! | stage | module | from | to |
 //! |---|---|---|---|
-//! | 1 parse, 2 resolve | [`syntax`](crate::syntax), [`resolve`] | texts | [`resolve::Program`] |
+//! | 1 parse, 2 resolve | [`syntax`], [`resolve`](crate::resolve) | texts | its `Program` |
 //! | 3 check | [`check`] | program | [`Model`]: names, shapes, dimensions |
 //! | 4 lower, vary | [`form`], [`lower`](crate::lower), [`derive`](crate::derive) | model | [`Forms`]: fluxes and tangents in scalars |
 //! | evaluate | [`eval`] | forms | geometry, laws and tests at the default parameters |
-//! | 5 kernels | [`kernel`](crate::kernel) | forms | [`Plan`]: loops over quadrature points |
+//! | 5 kernels | [`kernel`] | forms | [`Plan`]: loops over quadrature points |
 //! | 6 emit | [`emit`] | forms, kernels | Rust |
 //!
 //! Pure: no files, no clock, no randomness. The same texts give the same bytes.
@@ -18,7 +18,7 @@ use crate::form::Forms;
 use crate::model::Model;
 use crate::resolve::{Loader, assemble};
 use crate::source::SourceMap;
-use crate::{check, emit, eval, form, kernel};
+use crate::{check, emit, eval, form, kernel, syntax};
 use sha2::{Digest, Sha256};
 
 /// What compiling gave.
@@ -93,15 +93,25 @@ fn translate(model: &Model, sources: &SourceMap, sink: &mut Sink) -> Option<Outp
         }
     };
     let has_run_tests = model.tests.iter().any(|test| test.needs_run);
-    let stages = stages(&forms, &plan, sources, &rust);
+    let stages = stages(model, &forms, &plan, sources, &rust);
     Some(Output { name: model.name.clone(), rust, law_tests, has_run_tests, stages })
 }
 
 /// Printed stages.
-fn stages(forms: &Forms<'_>, plan: &Plan, sources: &SourceMap, rust: &str) -> Vec<(&'static str, String)> {
+fn stages(
+    model: &Model,
+    forms: &Forms<'_>,
+    plan: &Plan,
+    sources: &SourceMap,
+    rust: &str,
+) -> Vec<(&'static str, String)> {
+    // The texts were parsed before without an error.
+    let trees = sources.iter().map(|source| syntax::print::outline(&syntax::parse(source, &mut Sink::new())));
     let kernels = plan.kernels();
     let listed: Vec<String> = kernels.iter().map(|one| kernel::print::kernel(one, &forms.lowering)).collect();
     vec![
+        ("ast", trees.collect()),
+        ("model", model.print()),
         ("form", form::print::forms(forms, sources)),
         ("kernel", listed.join("\n")),
         ("cost", kernel::print::cost_table(kernels)),

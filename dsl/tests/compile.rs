@@ -82,9 +82,9 @@ fn plate() -> String {
 }
 
 #[test]
-fn a_small_model_at_every_stage() {
+fn a_small_model_from_its_forms_to_rust() {
     let output = output("plate.ansatz", &plate());
-    for stage in output.stage_names() {
+    for stage in ["form", "kernel", "cost", "rust"] {
         insta::assert_snapshot!(format!("plate_{stage}"), output.stage(stage).unwrap());
     }
 }
@@ -140,6 +140,11 @@ fn the_pieces_of_a_match_meet() {
     assert_eq!(law("x", ""), Vec::<&str>::new());
     assert_eq!(law("x", "C1"), ["T402"], "the slope turns from 1 to 3");
     assert_eq!(law("2*x - 1 m", "jumps"), Vec::<&str>::new());
+    assert_eq!(
+        codes("state s: Number = 0; physics p { dt(s)*(1 s) == match s { < 2 => s, else => 3 }; }"),
+        ["T402"],
+        "in equations"
+    );
 }
 
 #[test]

@@ -6,8 +6,9 @@
 use super::values_of;
 use crate::derive;
 use crate::diagnostic::{Code, Diagnostic, Sink};
-use crate::lower::{Lowering, Value};
-use crate::model::{Arm, Expr, ExprKind, Function, Shape, Smoothness, Type};
+use crate::form::size_of_kind;
+use crate::lower::{Lowering, SymbolKind, Value};
+use crate::model::{Arm, Expr, ExprKind, Function, Shape, Smoothness, StateId, StatementKind, Type};
 use crate::scalar::{Id, Symbol, symbols_of};
 
 /// Largest difference of two pieces that counts as none, relative to the values around.
@@ -17,22 +18,47 @@ const SAMPLES: [f64; 3] = [0.3, 0.9, 1.7];
 /// Steps of Newton's method towards a breakpoint.
 const STEPS: usize = 40;
 
-/// Checks the `match`es of all functions.
+/// Checks the `match`es of all functions, and those of lets and equations that stand on states alone.
 pub(super) fn check(lowering: &mut Lowering<'_>, parameters: &[f64], sink: &mut Sink) {
-    for function in &lowering.model.functions {
-        let mut matches = Vec::new();
-        find(&function.result, &mut matches);
-        for (_, value) in &function.lets {
-            find(value, &mut matches);
-        }
+    let model = lowering.model;
+    for function in &model.functions {
+        let lets = function.lets.iter().map(|(_, value)| value);
+        let matches = matches_in(lets.chain([&function.result]));
         if matches.is_empty() {
             continue;
         }
         let Some(sizes) = bind(lowering, function, parameters) else { continue };
-        for one in matches {
+        for one in &matches {
             check_match(lowering, parameters, &sizes, one, sink);
         }
     }
+    let equations = model.blocks.iter().flat_map(|block| &block.statements).filter_map(|statement| {
+        match &statement.kind {
+            StatementKind::Equation(a, b) => Some([a, b]),
+            _ => None,
+        }
+    });
+    let sizes = state_sizes(lowering, parameters);
+    for one in matches_in(model.lets.iter().map(|item| &item.value).chain(equations.flatten())) {
+        check_match(lowering, parameters, &sizes, &one, sink);
+    }
+}
+
+/// All matches in expressions that promise something.
+fn matches_in<'m>(exprs: impl Iterator<Item = &'m Expr>) -> Vec<Match<'m>> {
+    let mut found = Vec::new();
+    exprs.for_each(|expr| find(expr, &mut found));
+    found
+}
+
+/// The symbol of each state, and its size.
+fn state_sizes(lowering: &mut Lowering<'_>, parameters: &[f64]) -> Vec<(Symbol, f64)> {
+    let model = lowering.model;
+    let sizes = model.states.iter().enumerate().map(|(state, definition)| {
+        let symbol = lowering.symbols.symbol(SymbolKind::State(StateId(state)));
+        (symbol, size_of_kind(model, definition.dimension, parameters))
+    });
+    sizes.collect()
 }
 
 struct Match<'m> {
@@ -82,7 +108,7 @@ fn bind<'m>(
             Shape::Tensor => 9,
         };
         let variables: Vec<Id> = (0..count).map(|_| lowering.fresh()).collect();
-        let size = crate::form::size_of_kind(lowering.model, *dimension, parameters);
+        let size = size_of_kind(lowering.model, *dimension, parameters);
         sizes.extend(symbols_of(&lowering.pool, &variables).into_iter().map(|symbol| (symbol, size)));
         lowering.set_local(*local, Value::from_components(&variables));
     }
@@ -96,7 +122,7 @@ fn check_match<'m>(
     lowering: &mut Lowering<'m>,
     parameters: &[f64],
     sizes: &[(Symbol, f64)],
-    one: Match<'m>,
+    one: &Match<'m>,
     sink: &mut Sink,
 ) {
     let Ok(x) = lowering.global_scalar(one.scrutinee) else { return };

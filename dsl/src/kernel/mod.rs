@@ -3,7 +3,7 @@
 //!
 //! The form is deliberately small: one loop over the points of one rule, in it the geometry of a 6-node triangle or a 3-node edge, the
 //! interpolation of the inputs, the point's statements, and one of four ways to add them up. There are no branches, no calls, no arrays to
-//! index freely, no nested loops: what this cannot say, no kernel can do. [`interpret`] runs it, [`cost`] counts it, [`print`] shows it,
+//! index freely, no nested loops: what this cannot say, no kernel can do. [`interpret`] runs it, [`cost`] counts it, [`mod@print`] shows it,
 //! `emit` turns it into Rust.
 
 pub mod cost;

@@ -157,3 +157,18 @@ fn a_test_that_fails_warns_with_the_numbers() {
         compilation.diagnostics[0].message
     );
 }
+
+#[test]
+fn a_state_without_an_equation_gets_the_balance_of_its_energies() {
+    let items = "field h: Length in P1 on square = 0; param q = 1 Pa; param k = 3 [N/m]; state s: Length ~ 0;\n\
+                 let middle = mean(h on square);\n\
+                 physics rest { energy q*(dot(grad(h), grad(h)) + h^2/(1 m^2)) on square; }\n\
+                 physics spring { energy k/2*(s - middle)^2; load s with 2 N; }";
+    let text = output("spring.ansatz", &on_square(items)).stage("form").unwrap().to_owned();
+    let line = |start: &str| {
+        text.lines().map(str::trim).find(|line| line.starts_with(start)).unwrap_or_default().to_owned()
+    };
+    // The balance k (s - middle) - 2, divided by its size k.
+    assert!(line("residual = ").ends_with("*(-2 + k*(s - middle))"), "{text}");
+    assert_eq!(line("work on middle"), "work on middle = k*(middle - s)");
+}

@@ -1,12 +1,16 @@
 //! Step control: how large the error of a step was, whether that is acceptable, and how large the next one should be.
 //!
 //! The error is measured against the extrapolation of the last points (Milne's device): the extrapolation misses P y^(p+1), the method
-//! C h^(p+1) y^(p+1), so their difference times C h^(p+1) / (P + C h^(p+1)) estimates the error of the method. It is taken relative to the largest
-//! magnitude that each kind of unknowns has shown so far.
+//! C h^(p+1) y^(p+1), so their difference times C h^(p+1) / (P + C h^(p+1)) estimates the error of the method. It is taken relative to the
+//! [magnitude](super::magnitude) of each kind of unknowns.
 
-use super::Group;
 use super::integrator::Tableau;
+use crate::generated::Solve;
 
+/// Largest step of a model that names none, as a part of its time span.
+const LARGEST: f64 = 1.0 / 50.0;
+/// Smallest step of a model that names none, as a part of its largest.
+const SMALLEST: f64 = 1e-6;
 /// First step after a start, as a part of the largest.
 const START: f64 = 0.02;
 /// Part of the step that the error would allow.
@@ -18,51 +22,15 @@ const SHRINK: (f64, f64) = (0.1, 0.7);
 /// Exponents of the PI controller (Gustafsson 1991), over the order of the error.
 const PI: (f64, f64) = (0.7, 0.4);
 
-/// Largest magnitude of each kind of unknowns so far.
-#[derive(Clone, Debug)]
-pub struct Magnitudes {
-    groups: Vec<Group>,
-    largest: Vec<f64>,
-}
-
-impl Magnitudes {
-    /// Nothing seen yet.
-    pub fn new(groups: Vec<Group>) -> Self {
-        Self { largest: vec![0.0; groups.len()], groups }
-    }
-
-    /// Takes account of y.
-    pub fn see(&mut self, y: &[f64]) {
-        for (group, largest) in self.groups.iter().zip(&mut self.largest) {
-            *largest = y[group.range.clone()].iter().fold(*largest, |m, x| m.max(x.abs()));
-        }
-    }
-
-    /// Root mean square of the difference of `a` and `b`, relative to the magnitudes (`a` included), of the worst tested kind.
-    pub fn relative_difference(&self, a: &[f64], b: &[f64]) -> f64 {
-        let mut seen = self.clone();
-        seen.see(a);
-        let relative = |(group, largest): (&Group, &f64)| {
-            let range = group.range.clone();
-            let sum: f64 = a[range.clone()].iter().zip(&b[range.clone()]).map(|(a, b)| (a - b).powi(2)).sum();
-            let mean = (sum / range.len().max(1) as f64).sqrt();
-            if *largest > 0.0 { mean / largest } else { 0.0 }
-        };
-        let tested = seen.groups.iter().zip(&seen.largest).filter(|(group, _)| group.tested);
-        tested.map(relative).fold(0.0, f64::max)
-    }
-
-    /// Time over which the fastest tested kind changes by its whole magnitude at these rates; infinite if nothing changes or everything is zero.
-    pub fn time_scale(&self, rates: &[f64]) -> f64 {
-        let fastest = |(group, largest): (&Group, &f64)| {
-            let range = group.range.clone();
-            let sum: f64 = rates[range.clone()].iter().map(|x| x * x).sum();
-            let mean = (sum / range.len().max(1) as f64).sqrt();
-            if *largest > 0.0 && mean > 0.0 { largest / mean } else { f64::INFINITY }
-        };
-        let tested = self.groups.iter().zip(&self.largest).filter(|(group, _)| group.tested);
-        tested.map(fastest).fold(f64::INFINITY, f64::min)
-    }
+/// Settings with bounds of the step where the model names none (they are zero or infinite): a fiftieth of the time span, and a millionth of the
+/// largest step. A smallest step above the largest gives way, unless it alone is named.
+pub fn with_step_bounds(settings: Solve) -> Solve {
+    let Some((start, end)) = settings.time else { return settings };
+    let named = |size: f64| (size > 0.0 && size.is_finite()).then_some(size);
+    let smallest = named(settings.min_step);
+    let max_step = named(settings.max_step).unwrap_or((LARGEST * (end - start)).max(smallest.unwrap_or(0.0)));
+    let min_step = smallest.unwrap_or(SMALLEST * max_step).min(max_step);
+    Solve { max_step, min_step, ..settings }
 }
 
 /// Part of the difference between solution and extrapolation that is the error of the method; `remainder` is the factor P of an extrapolation of
@@ -101,7 +69,7 @@ impl Control {
     }
 
     /// Size for the first step after a start or a jump: a fiftieth of the largest, and no unknown should change by more than sqrt(tolerance) of
-    /// its magnitude. `time_scale` is that of [`Magnitudes::time_scale`].
+    /// its magnitude. `time_scale` is that of [`time_scale`](super::magnitude::Magnitudes::time_scale).
     pub fn restart(&mut self, time_scale: f64) {
         let size = (START * self.largest).min(self.tolerance.sqrt() * time_scale);
         self.size = size.clamp(self.smallest, self.largest);
@@ -151,21 +119,34 @@ impl Control {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::generated::Integrator;
 
-    #[test]
-    fn each_kind_is_measured_by_its_own_magnitude() {
-        let group = |range, tested| Group { range, tested };
-        let mut seen = Magnitudes::new(vec![group(0..2, true), group(2..3, true), group(3..4, false)]);
-        seen.see(&[1000.0, 0.0, 0.1, 1.0]);
-        let worst = seen.relative_difference(&[900.0, 0.0, 0.05, 9.0], &[901.0, 1.0, 0.06, 0.0]);
-        assert!((worst - 0.1).abs() < 1e-12);
+    fn bounds(max_step: f64, min_step: f64) -> (f64, f64) {
+        let settings = Solve {
+            time: Some((50.0, 250.0)),
+            integrator: Integrator::Sdirk2,
+            max_step,
+            min_step,
+            step_tolerance: 1e-4,
+            newton_tolerance: 1e-8,
+            newton_iterations: 10,
+        };
+        let Solve { max_step, min_step, .. } = with_step_bounds(settings);
+        (max_step, min_step)
     }
 
     #[test]
-    fn a_kind_that_stays_zero_does_not_count() {
-        let seen = Magnitudes::new(vec![Group { range: 0..1, tested: true }]);
-        assert_eq!(seen.relative_difference(&[0.0], &[0.0]), 0.0);
-        assert_eq!(seen.time_scale(&[1.0]), f64::INFINITY);
+    fn bounds_that_are_not_named_follow_from_the_span() {
+        assert_eq!(bounds(f64::INFINITY, 0.0), (4.0, 4e-6));
+        assert_eq!(bounds(0.5, 0.0), (0.5, 5e-7));
+        assert_eq!(bounds(f64::INFINITY, 0.25), (4.0, 0.25));
+        assert_eq!(bounds(0.5, 0.25), (0.5, 0.25));
+    }
+
+    #[test]
+    fn bounds_never_cross() {
+        assert_eq!(bounds(f64::INFINITY, 10.0), (10.0, 10.0));
+        assert_eq!(bounds(0.5, 10.0), (0.5, 0.5));
     }
 
     #[test]

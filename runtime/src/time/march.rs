@@ -1,9 +1,10 @@
 //! Marching: accepted steps one after another, each predicted from the last ones, solved, and judged.
 
 use super::ImplicitSystem;
-use super::control::{Control, Magnitudes, Verdict, milne_factor};
+use super::control::{Control, Verdict, milne_factor};
 use super::history::{History, blend, interpolation_weights};
 use super::integrator::{Point, Tableau, advance, tableau};
+use super::magnitude::Magnitudes;
 use crate::error::SolveError;
 use crate::generated::{Integrator, Solve};
 
@@ -51,7 +52,7 @@ impl March {
         y: Vec<f64>,
     ) -> Result<Self, SolveError> {
         let mut control = Control::new(settings.min_step, settings.max_step, settings.step_tolerance);
-        let mut magnitudes = Magnitudes::new(system.groups());
+        let mut magnitudes = Magnitudes::new(system.groups(), settings.min_step, settings.max_step);
         let mut statistics = Statistics::default();
         let start = with_rates(system, settings, time, y, &mut statistics.iterations)?;
         magnitudes.see(&start.values);
@@ -129,8 +130,8 @@ impl March {
             0.0
         } else {
             let predicted = self.history.extrapolate(end.time, order);
-            let difference = self.magnitudes.relative_difference(&end.values, &predicted);
-            milne_factor(self.method, remainder, size) * difference
+            milne_factor(self.method, remainder, size)
+                * self.magnitudes.relative_error(&end, size, &predicted)
         };
         Ok((Proposal { end, size, iterations }, error))
     }
@@ -177,7 +178,7 @@ fn with_rates(
     loop {
         match advance(euler, system, &start, size, |_| start.values.clone(), iterations) {
             Ok(end) => return Ok(Point { rates: end.rates, ..start }),
-            Err(error) if 0.5 * size < settings.min_step => {
+            Err(error) if 0.5 * size <= settings.min_step => {
                 return Err(SolveError { time, step: size, ..error });
             }
             Err(_) => size *= 0.5,

@@ -1,13 +1,14 @@
 //! Time: from a discretised model F(t, y, y') = 0 to its accepted steps, events and outputs.
 //!
 //! The pieces, from the inside out: [`integrator`] makes one step of the implicit method, [`history`] predicts the next step from the last ones,
-//! [`control`] chooses step sizes, [`march`] puts these together, [`events`] finds when conditions turn true inside a step, [`schedule`] knows when
+//! [`magnitude`] knows what errors are measured against, [`control`] chooses step sizes, [`march`] puts these together, [`events`] finds when conditions turn true inside a step, [`schedule`] knows when
 //! something is due, [`output`] makes table rows and frames, and [`run`] drives a whole run. None of them knows meshes or physics: what is integrated is an [`ImplicitSystem`].
 
 pub mod control;
 pub mod events;
 pub mod history;
 pub mod integrator;
+pub mod magnitude;
 pub mod march;
 pub mod output;
 pub mod root;

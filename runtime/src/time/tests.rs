@@ -1,5 +1,6 @@
 //! Whole runs of small systems with known solutions.
 
+use super::control::with_step_bounds;
 use super::events::Watcher;
 use super::integrator::{Point, advance, tableau};
 use super::march::March;
@@ -416,4 +417,43 @@ fn predictions_of_a_parabola_cost_no_correction() {
     }
     let proposal = march.propose(&mut system, 5.0).unwrap();
     assert!(proposal.iterations <= 4, "{}", proposal.iterations);
+}
+
+/// Number of steps until t = 10, at most 1, the smallest of them, and the largest error relative to the end, of what grows from zero.
+fn growth_from_rest(
+    residual: fn(f64, &[f64], &[f64]) -> Vec<f64>,
+    exact: fn(f64) -> f64,
+) -> (usize, f64, f64) {
+    let (record, notes) =
+        run_small(&mut Small::new(&[true], residual), plan(settings(10.0, 1e-4, 1.0), &[]), &[0.0]);
+    let error = record.steps().iter().map(|g| (g[1] - exact(g[0])).abs() / exact(10.0)).fold(0.0, f64::max);
+    (notes.sizes.len(), notes.sizes.iter().copied().fold(f64::INFINITY, f64::min), error)
+}
+
+#[test]
+fn what_starts_or_wakes_from_rest_does_not_need_the_smallest_steps() {
+    let check = |residual: fn(f64, &[f64], &[f64]) -> Vec<f64>, exact: fn(f64) -> f64, most: usize| {
+        let (steps, smallest, error) = growth_from_rest(residual, exact);
+        assert!(
+            steps <= most && smallest > 1e-4 && error < 1e-4,
+            "{steps} steps from {smallest}, error {error}"
+        );
+    };
+    check(|t, _, rates| vec![rates[0] - t], |t| t * t / 2.0, 30);
+    check(|t, _, rates| vec![rates[0] - t * t], |t| t.powi(3) / 3.0, 150);
+    check(|t, _, rates| vec![rates[0] - (t - 3.3).max(0.0)], |t| (t - 3.3).max(0.0).powi(2) / 2.0, 30);
+    check(
+        |t, _, rates| vec![rates[0] - (t - 3.3).max(0.0).powi(2)],
+        |t| (t - 3.3).max(0.0).powi(3) / 3.0,
+        120,
+    );
+}
+
+#[test]
+fn a_start_that_cannot_be_solved_ends_at_the_smallest_step() {
+    let mut system = oscillator();
+    system.forbidden = 0.0..1.0;
+    let unbounded = Solve { min_step: 0.0, max_step: f64::INFINITY, ..settings(10.0, 1e-4, 1.0) };
+    let error = March::new(&mut system, with_step_bounds(unbounded), 0.0, vec![1.0, 0.0]).err().unwrap();
+    assert!(error.step < 1e-6 && system.solves < 15, "{} {}", error.step, system.solves);
 }

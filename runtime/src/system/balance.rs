@@ -1,6 +1,7 @@
 //! The balance of the fields: its residual, its tangent and the outer products of the functionals.
 
 use super::System;
+use super::contact::Curvature;
 use super::newton::StageProblem;
 use super::observables::ObservableOn;
 use super::states::Stage as StateStage;
@@ -127,7 +128,13 @@ impl System {
     }
 
     /// Linearises the balance at a settled point; matrix values go to `self.values`.
-    pub(super) fn linearise(&mut self, y: &[f64], rates: &[f64], alpha: f64) -> Balance {
+    pub(super) fn linearise(
+        &mut self,
+        y: &[f64],
+        rates: &[f64],
+        alpha: f64,
+        curvature: Curvature,
+    ) -> Balance {
         let mut residual = vec![0.0; self.unknowns.length];
         self.values.fill(0.0);
         let coefficients = self.coefficients();
@@ -138,7 +145,7 @@ impl System {
         for pair in &mut self.pairs {
             pair.update(&self.mesh, &self.unknowns, y);
             let matrix = (&self.pattern, &self.equations[..]);
-            pair.add_tangent(&self.unknowns, &self.g, matrix, &mut residual, &mut self.values);
+            pair.add_tangent(&self.unknowns, &self.g, matrix, curvature, &mut residual, &mut self.values);
         }
         for functional in &mut self.functionals {
             functional.evaluate_gradient(&self.mesh, &self.unknowns, at);

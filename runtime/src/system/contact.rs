@@ -19,6 +19,15 @@ const MARGIN: f64 = 4.0;
 /// Samples for the gap beyond which all laws vanish.
 const SAMPLES: usize = 64;
 
+/// Whether a tangent has the part W'(g) Hess g, by which surfaces that turn and slide while they press can make it indefinite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Curvature {
+    /// The exact tangent.
+    Kept,
+    /// Only W''(g) grad g (grad g)^T: safer far from the solution, not quadratic near it.
+    Dropped,
+}
+
 /// One direction of a pair: the points of one surface against the curves of the other.
 struct Side {
     pair: ContactPair,
@@ -149,6 +158,7 @@ impl PairOn {
         unknowns: &Unknowns,
         g: &[f64],
         matrix: (&SparsePattern, &[u32]),
+        curvature: Curvature,
         residual: &mut [f64],
         values: &mut [f64],
     ) {
@@ -160,7 +170,10 @@ impl PairOn {
             Some(equations[unknown]).filter(|&e| e != NONE)
         };
         for (integral, side) in self.integrals_on_sides() {
-            let law = |point: usize, gap: f64| (integral.law)(gap, side.x[point], g);
+            let law = |point: usize, gap: f64| {
+                let [energy, force, stiffness] = (integral.law)(gap, side.x[point], g);
+                [energy, if curvature == Curvature::Kept { force } else { 0.0 }, stiffness]
+            };
             side.pair.hessian(&law, |row, column, value| {
                 let (Some(row), Some(column)) = (equation(row), equation(column)) else { return };
                 if pattern.kind() == MatrixKind::Symmetric && row < column {

@@ -2,6 +2,7 @@
 
 use super::System;
 use super::balance::{Balance, norm};
+use super::contact::Curvature;
 use crate::error::{Cause, SolveError};
 use crate::solve::linear::{Definiteness, LinearError};
 use std::ops::Range;
@@ -72,7 +73,11 @@ struct Progress {
 
 impl System {
     /// Solves one stage; `y` is the prediction on entry and the solution on return.
-    pub fn solve_stage(&mut self, problem: &StageProblem<'_>, y: &mut [f64]) -> Result<NewtonReport, SolveError> {
+    pub fn solve_stage(
+        &mut self,
+        problem: &StageProblem<'_>,
+        y: &mut [f64],
+    ) -> Result<NewtonReport, SolveError> {
         let mut start = y.to_vec();
         self.apply_holds(problem.time, &mut start);
         let current = match self.evaluate(problem, start) {
@@ -138,7 +143,11 @@ impl System {
     }
 
     /// A full step in the direction that the last factors give; taken, and tried again, if it makes the residual much smaller.
-    fn step_with_old_factors(&mut self, problem: &StageProblem<'_>, progress: &mut Progress) -> Result<bool, Cause> {
+    fn step_with_old_factors(
+        &mut self,
+        problem: &StageProblem<'_>,
+        progress: &mut Progress,
+    ) -> Result<bool, Cause> {
         let Progress { current, .. } = progress;
         let direction = self.solve_for(&current.residual)?;
         let trial = self.evaluate(problem, self.along(&current.y, &direction, 1.0));
@@ -165,21 +174,31 @@ impl System {
         current: &Iterate,
         report: &mut NewtonReport,
     ) -> Result<(Balance, Vec<f64>), Cause> {
-        let mut balance = self.linearise(&current.y, &current.rates, problem.alpha);
+        let mut balance = self.linearise(&current.y, &current.rates, problem.alpha, Curvature::Kept);
         if self.pairs.iter().any(|pair| !pair.covered()) {
             self.rebuild_pattern(&current.y).map_err(|e| Cause::Singular(e.to_string()))?;
-            balance = self.linearise(&current.y, &current.rates, problem.alpha);
+            balance = self.linearise(&current.y, &current.rates, problem.alpha, Curvature::Kept);
         }
+        report.negative_pivots = self.factor(&balance)?;
+        if report.negative_pivots > 0 && !self.pairs.is_empty() {
+            balance = self.linearise(&current.y, &current.rates, problem.alpha, Curvature::Dropped);
+            self.factor(&balance)?;
+        }
+        let direction = self.solve_for(&balance.residual)?;
+        Ok((balance, direction))
+    }
+
+    /// Factors the linearised balance; its number of negative pivots.
+    fn factor(&mut self, balance: &Balance) -> Result<usize, Cause> {
         let entries = self.pattern.entries();
         let expected = if self.indefinite { Definiteness::Indefinite } else { Definiteness::Positive };
         let factors = self
             .solver
             .factor_low_rank(&self.values[..entries], &balance.b, Some(&balance.c), expected)
             .map_err(|e| self.matrix_failure(e))?;
-        report.negative_pivots = factors.negative_pivots.unwrap_or(0);
-        self.indefinite = report.negative_pivots > 0;
-        let direction = self.solve_for(&balance.residual)?;
-        Ok((balance, direction))
+        let negative_pivots = factors.negative_pivots.unwrap_or(0);
+        self.indefinite = negative_pivots > 0;
+        Ok(negative_pivots)
     }
 
     /// Direction that the present factors give for a residual.

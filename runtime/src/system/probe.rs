@@ -2,6 +2,7 @@
 
 use super::System;
 use super::balance::Balance;
+use super::contact::Curvature;
 use super::newton::StageProblem;
 use super::terms::At;
 use crate::error::Cause;
@@ -42,7 +43,7 @@ impl Probe<'_> {
 
     /// Assembles residual and tangent, as one iteration of Newton's method does.
     pub fn assemble(&mut self) {
-        self.balance = self.system.linearise(&self.y, &self.rates, self.alpha);
+        self.balance = self.system.linearise(&self.y, &self.rates, self.alpha, Curvature::Kept);
     }
 
     /// Product of the tangent last assembled with a vector; rows and columns of held unknowns are zero.

@@ -279,6 +279,9 @@ pub struct PointInput {
     pub rate: bool,
 }
 
+/// An emitted function of region, reference position, inputs and globals; writes the results.
+pub type PointEvaluation = fn(region: usize, x: [f64; 2], inputs: &[f64], g: &[f64], out: &mut [f64]);
+
 /// A function of position, field values and globals at one point.
 pub struct PointFunction {
     /// What it reads.
@@ -288,7 +291,7 @@ pub struct PointFunction {
     /// Regions in which results may differ (`match region`): `region` is an index into this list.
     pub regions: &'static [&'static str],
     /// Evaluates.
-    pub evaluate: fn(region: usize, x: [f64; 2], inputs: &[f64], g: &[f64], out: &mut [f64]),
+    pub evaluate: PointEvaluation,
 }
 
 /// `hold u = g on D`: prescribes one component.
@@ -524,6 +527,8 @@ pub trait Record {
     fn steps(&self) -> &[Vec<f64>];
     /// Globals at a time (interpolated).
     fn at(&self, time: f64) -> Vec<f64>;
+    /// How the run ended, in one word: see [`RunRecord::outcome`](crate::record::RunRecord::outcome).
+    fn outcome(&self) -> &str;
 }
 
 /// Result of one expectation.
@@ -533,8 +538,10 @@ pub struct Expectation {
     pub text: &'static str,
     /// Where it stands.
     pub place: &'static str,
-    /// Value found, value expected, tolerance (None for plain conditions).
+    /// Value found, value expected, tolerance (None for plain conditions) [internal units].
     pub numbers: Option<[f64; 3]>,
+    /// Internal unit of the numbers.
+    pub unit: &'static str,
     /// Whether it holds.
     pub holds: bool,
 }

@@ -116,11 +116,11 @@ impl System {
         let mut sum = 0.0;
         for (field, numbers) in self.program.fields.iter().zip(&self.unknowns.fields) {
             let offset = if field.unit == length { self.cell_size } else { 0.0 };
-            for unknown in numbers.first..numbers.first + numbers.count() {
-                let equation = self.equations[unknown];
+            let range = numbers.first..numbers.first + numbers.count();
+            for (value, &equation) in y[range.clone()].iter().zip(&self.equations[range]) {
                 if equation != NONE {
                     let diagonal = self.values[self.diagonal[equation as usize]];
-                    sum += (diagonal * (y[unknown].abs() + offset)).powi(2);
+                    sum += (diagonal * (value.abs() + offset)).powi(2);
                 }
             }
         }

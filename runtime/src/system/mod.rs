@@ -15,6 +15,7 @@ mod newton;
 mod observables;
 mod point;
 mod probe;
+mod scalars;
 mod start;
 mod states;
 mod terms;
@@ -105,9 +106,13 @@ impl System {
             StateSolver::new(system, program.layout, bounds)
         });
         let cell_size = (mesh.cells.len().max(1) as f64).recip().sqrt() * mesh_extent(&mesh);
+        let settings = with_step_bounds((program.solve)(&g));
+        if settings.time.is_some_and(|(start, end)| start >= end) {
+            return Err(Error::Model(String::from("the time of a run must end after it starts")));
+        }
         let mut system = Self {
             program,
-            settings: with_step_bounds((program.solve)(&g)),
+            settings,
             mesh,
             unknowns,
             g,
@@ -177,8 +182,10 @@ impl System {
     }
 }
 
+/// A solver for the pattern. Without any equation it is one for a single equation, which is never asked.
 fn analyse(pattern: &SparsePattern, borders: usize) -> Result<BorderedSolver, Error> {
-    BorderedSolver::new(pattern, borders).map_err(|e| Error::Model(e.to_string()))
+    let single = (pattern.size() == 0).then(|| SparsePattern::from_elements(1, MatrixKind::Symmetric, []));
+    BorderedSolver::new(single.as_ref().unwrap_or(pattern), borders).map_err(|e| Error::Model(e.to_string()))
 }
 
 /// Diagonal of the box around a mesh.

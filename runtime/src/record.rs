@@ -123,24 +123,45 @@ impl RunRecord {
         &self.times
     }
 
-    /// Value of a function of the globals at a time. At a recorded time it is the value there (before a jump); inside a step it is interpolated
-    /// between the values at up to three recorded points, with weights that depend on the times alone. Times outside the run give the value
-    /// at its nearest end, an empty record gives not-a-number.
-    pub fn interpolate(&self, time: f64, value: impl Fn(&[f64]) -> f64) -> f64 {
-        let (weights, points) = self.nodes(time);
-        weights.iter().zip(points).map(|(w, g)| w * value(g)).reduce(|a, b| a + b).unwrap_or(f64::NAN)
+    /// Values of functions of the globals at a time. At a recorded time they are those there (before a jump); inside a step they are interpolated
+    /// between those at up to three recorded points, with the same weights for all: by a parabola, or by a line where the parabola of any value
+    /// would leave the range of its two neighbours, as it does behind a kink. Times outside the run give the values at its nearest end, an empty
+    /// record gives none.
+    pub fn interpolate(&self, time: f64, values: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+        let (times, points) = self.nodes(time);
+        let rows: Vec<Vec<f64>> = points.iter().map(|g| values(g)).collect();
+        let beyond = |k: usize| overshoots(times, [&rows[0], &rows[1], &rows[2]].map(|row| row[k]));
+        let skip = usize::from(rows.len() == 3 && (0..rows[0].len()).any(beyond));
+        let weights = interpolation_weights(&times[skip..], time);
+        blend(&weights, rows[skip..].iter().map(Vec::as_slice))
     }
 
-    /// Weights of the points that surround a time.
-    fn nodes(&self, time: f64) -> (Vec<f64>, &[Vec<f64>]) {
+    /// Times and globals of the points that determine the values at a time: one on it, or two around it and the one before.
+    fn nodes(&self, time: f64) -> (&[f64], &[Vec<f64>]) {
         let after = self.times.partition_point(|t| *t < time).min(self.times.len().saturating_sub(1));
         let on_point = self.times.get(after).is_none_or(|t| *t <= time);
         if on_point || after == 0 {
-            return (vec![1.0], self.steps.get(after..=after).unwrap_or(&[]));
+            return (
+                self.times.get(after..=after).unwrap_or(&[]),
+                self.steps.get(after..=after).unwrap_or(&[]),
+            );
         }
         let first = after.saturating_sub(2).max(self.stretches[after]).min(after - 1);
-        (interpolation_weights(&self.times[first..=after], time), &self.steps[first..=after])
+        (&self.times[first..=after], &self.steps[first..=after])
     }
+}
+
+/// Part of its largest value by which a parabola may leave the range of its neighbours unseen.
+const OVERSHOOT: f64 = 1e-3;
+
+/// Whether the parabola through three points leaves the range of the last two between them.
+fn overshoots(times: &[f64], values: [f64; 3]) -> bool {
+    let slope = |k: usize| (values[k + 1] - values[k]) / (times[k + 1] - times[k]);
+    let last = times[2] - times[1];
+    let bend = (slope(1) - slope(0)).abs() / (times[2] - times[0]) * last * last;
+    let rise = (values[2] - values[1]).abs();
+    let size = values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
+    rise < bend && (bend - rise).powi(2) > 4.0 * OVERSHOOT * size * bend
 }
 
 impl Record for RunRecord {
@@ -154,8 +175,12 @@ impl Record for RunRecord {
     }
 
     fn at(&self, time: f64) -> Vec<f64> {
-        let (weights, points) = self.nodes(time);
-        blend(&weights, points.iter().map(Vec::as_slice))
+        let (times, points) = self.nodes(time);
+        blend(&interpolation_weights(times, time), points.iter().map(Vec::as_slice))
+    }
+
+    fn outcome(&self) -> &str {
+        self.outcome()
     }
 }
 
@@ -200,12 +225,24 @@ mod tests {
     #[test]
     fn linear_relations_of_values_hold_in_between() {
         let record = parabola();
-        let (a, b) = (|g: &[f64]| (g[0] + 1.0).ln(), |g: &[f64]| g[1].sin());
         for time in [0.3, 1.2, 2.9, 3.1, 4.6] {
-            let whole = record.interpolate(time, |g| 2.0 * a(g) - b(g));
-            let parts = 2.0 * record.interpolate(time, a) - record.interpolate(time, b);
-            assert!((whole - parts).abs() < 1e-14);
+            let values = |g: &[f64]| {
+                let (a, b) = ((g[0] + 1.0).ln(), g[1].sin());
+                vec![a, b, 2.0 * a - b]
+            };
+            let row = record.interpolate(time, values);
+            assert!((row[2] - (2.0 * row[0] - row[1])).abs() < 1e-14);
         }
+    }
+
+    #[test]
+    fn a_row_is_as_smooth_as_its_values_and_stays_above_a_kink() {
+        let mut record = RunRecord::new(&EVENTS);
+        record.begin_stretch(0.0, vec![0.0]);
+        [1.0, 2.0].iter().for_each(|&t| record.push(t, vec![t]));
+        let (square, clipped) = (|g: &[f64]| g[0] * g[0], |g: &[f64]| (1.0 - g[0]).max(0.0));
+        assert_eq!(record.interpolate(1.5, |g| vec![square(g)]), vec![2.25]);
+        assert_eq!(record.interpolate(1.5, |g| vec![square(g), clipped(g)]), vec![2.5, 0.0], "all by a line");
     }
 
     #[test]

@@ -58,5 +58,5 @@ impl Outputs {
 
 /// A table's row at a time [display units].
 fn row(table: &Table, record: &RunRecord, time: f64) -> Vec<f64> {
-    table.columns.iter().map(|c| record.interpolate(time, |g| (c.value)(g) / c.unit_value)).collect()
+    record.interpolate(time, |g| table.columns.iter().map(|c| (c.value)(g) / c.unit_value).collect())
 }

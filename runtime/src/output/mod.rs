@@ -13,7 +13,16 @@ pub mod results;
 pub mod summary;
 
 use crate::error::Error;
+use crate::generated::{Action, Event};
 use std::path::Path;
+
+/// What an event warns of, text by text.
+fn warnings(event: &Event) -> impl Iterator<Item = &'static str> {
+    event.actions.iter().filter_map(|action| match action {
+        Action::Warn(text) => Some(*text),
+        Action::Stop | Action::Set(..) => None,
+    })
+}
 
 /// The error of a file that cannot be written.
 fn cannot_write(path: &Path, cause: &dyn std::fmt::Display) -> Error {

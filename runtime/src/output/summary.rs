@@ -56,6 +56,9 @@ struct Event<'a> {
     time: f64,
     unit: &'a str,
     documentation: &'a str,
+    /// The texts of its warnings; absent if it has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    message: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -100,18 +103,13 @@ pub fn write(
     run: &Run,
 ) -> Result<(), Error> {
     let unit = program.base_units[2];
-    let documentation = |name: &str| program.events.iter().find(|e| e.name == name).map_or("", |e| e.doc);
     let quality = mesh.quality();
     let summary = Summary {
         model: program.name,
         outcome: &run.outcome,
         error: run.error.as_deref(),
         time: Quantity { value: run.time, unit },
-        events: run
-            .events
-            .iter()
-            .map(|(name, time)| Event { name, time: *time, unit, documentation: documentation(name) })
-            .collect(),
+        events: run.events.iter().map(|(name, time)| event(program, name, *time)).collect(),
         parameters: program
             .parameters
             .iter()
@@ -142,4 +140,16 @@ pub fn write(
     };
     let text = serde_json::to_string_pretty(&summary).map_err(|e| super::cannot_write(path, &e))?;
     std::fs::write(path, text + "\n").map_err(|e| super::cannot_write(path, &e))
+}
+
+fn event<'a>(program: &'a Program, name: &'a str, time: f64) -> Event<'a> {
+    let declared = program.events.iter().find(|e| e.name == name);
+    let warnings: Vec<&str> = declared.into_iter().flat_map(super::warnings).collect();
+    Event {
+        name,
+        time,
+        unit: program.base_units[2],
+        documentation: declared.map_or("", |e| e.doc),
+        message: (!warnings.is_empty()).then(|| warnings.join("; ")),
+    }
 }

@@ -112,7 +112,11 @@ impl ImplicitSystem for Discretised {
 
     fn solve_stage(&mut self, stage: &Stage<'_>, y: &mut [f64]) -> Result<usize, SolveError> {
         let problem = StageProblem { time: stage.time, alpha: stage.alpha, base: stage.base };
-        let report = self.system.solve_stage(&problem, y)?;
+        let report = if self.system.equation_count() == 0 {
+            self.system.solve_scalars(&problem, y)?
+        } else {
+            self.system.solve_stage(&problem, y)?
+        };
         let stable = *self.definite.get_or_insert(report.negative_pivots);
         if report.negative_pivots > stable {
             return Err(SolveError {
@@ -128,12 +132,8 @@ impl ImplicitSystem for Discretised {
         Ok(report.iterations)
     }
 
-    /// The states that were not set follow with the first step from here.
-    fn set_states(&mut self, _: f64, y: &mut [f64], values: &[(usize, f64)]) -> Result<(), SolveError> {
-        for &(state, value) in values {
-            y[self.system.unknowns.states + state] = value;
-        }
-        Ok(())
+    fn set_states(&mut self, time: f64, y: &mut [f64], values: &[(usize, f64)]) -> Result<(), SolveError> {
+        self.system.set_states(time, y, values)
     }
 
     fn observe(&mut self, point: &Point) -> Vec<f64> {

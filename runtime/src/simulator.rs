@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::generated::{Program, Record};
 use crate::observer::Both;
-use crate::output::progress::Progress;
+use crate::output::progress::{Progress, with_unit};
 use crate::output::results::Results;
 use crate::output::summary::Run;
 use crate::settings::{display, resolve, split, time};
@@ -31,12 +31,38 @@ pub fn main(program: &'static Program) -> ExitCode {
 fn command(program: &'static Program) -> Command {
     Command::new(program.name)
         .about(if program.doc.is_empty() { "A simulator made by Ansatz" } else { program.doc })
-        .arg(Arg::new("set").long("set").value_name("NAME=VALUE").action(ArgAction::Append).help("Sets a parameter, such as --set r=\"1.2 um\""))
-        .arg(Arg::new("out").long("out").value_name("DIR").help("Folder for the results; results/MODEL if not given"))
-        .arg(Arg::new("until").long("until").value_name("TIME").help("Ends the run at this time, such as \"50 s\""))
-        .arg(Arg::new("no-frames").long("no-frames").action(ArgAction::SetTrue).help("Writes tables only, no field frames and pictures"))
+        .arg(
+            Arg::new("set")
+                .long("set")
+                .value_name("NAME=VALUE")
+                .action(ArgAction::Append)
+                .help("Sets a parameter, such as --set r=\"1.2 um\""),
+        )
+        .arg(
+            Arg::new("out")
+                .long("out")
+                .value_name("DIR")
+                .help("Folder for the results; results/MODEL if not given"),
+        )
+        .arg(
+            Arg::new("until")
+                .long("until")
+                .value_name("TIME")
+                .help("Ends the run at this time, such as \"50 s\""),
+        )
+        .arg(
+            Arg::new("no-frames")
+                .long("no-frames")
+                .action(ArgAction::SetTrue)
+                .help("Writes tables only, no field frames and pictures"),
+        )
         .arg(Arg::new("quiet").long("quiet").short('q').action(ArgAction::SetTrue).help("Shows no progress"))
-        .arg(Arg::new("test").long("test").action(ArgAction::SetTrue).help("Checks the model's expectations after the run"))
+        .arg(
+            Arg::new("test")
+                .long("test")
+                .action(ArgAction::SetTrue)
+                .help("Checks the model's expectations after the run"),
+        )
         .after_help(parameter_list(program))
 }
 
@@ -54,12 +80,17 @@ fn parameter_list(program: &Program) -> String {
         let shown = |x: f64| display(x / parameter.unit_value);
         let unit = if parameter.unit == "1" { String::new() } else { format!(" {}", parameter.unit) };
         let range = match ((parameter.choices)(&g), (parameter.range)(&g)) {
-            (Some(list), _) => format!("  one of {}", list.iter().map(|c| shown(*c)).collect::<Vec<_>>().join(", ")),
-            (None, (low, high)) if low.is_finite() || high.is_finite() => format!("  {} .. {}{unit}", shown(low), shown(high)),
+            (Some(list), _) => {
+                format!("  one of {}", list.iter().map(|c| shown(*c)).collect::<Vec<_>>().join(", "))
+            }
+            (None, (low, high)) if low.is_finite() || high.is_finite() => {
+                format!("  {} .. {}{unit}", shown(low), shown(high))
+            }
             _ => String::new(),
         };
         let _ = write!(text, "  {:<10} = {}{unit}{range}", parameter.name, shown(*value));
-        let _ = if parameter.doc.is_empty() { writeln!(text) } else { writeln!(text, "  ({})", parameter.doc) };
+        let _ =
+            if parameter.doc.is_empty() { writeln!(text) } else { writeln!(text, "  ({})", parameter.doc) };
     }
     text
 }
@@ -116,11 +147,17 @@ fn expectations(program: &Program, simulation: &Simulation) -> Result<(), Error>
         for found in (test.evaluate)(simulation.record()) {
             let verdict = if found.holds { "passed" } else { "FAILED" };
             let numbers = found.numbers.map_or(String::new(), |[value, expected, tolerance]| {
-                format!("  found {}, expected {} within {}", display(value), display(expected), display(tolerance))
+                let [value, expected, tolerance] =
+                    [value, expected, tolerance].map(|x| with_unit(x, found.unit));
+                format!("  found {value}, expected {expected} within {tolerance}")
             });
             eprintln!("{verdict}  {}: {}{numbers}  ({})", test.title, found.text, found.place);
             failed += usize::from(!found.holds);
         }
     }
-    if failed == 0 { Ok(()) } else { Err(Error::Model(format!("{failed} expectations of the model do not hold"))) }
+    if failed == 0 {
+        Ok(())
+    } else {
+        Err(Error::Model(format!("{failed} expectations of the model do not hold")))
+    }
 }

@@ -28,16 +28,17 @@ pub fn helpers(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
         quote! {
             /// Verdict on a condition.
             fn holds(text: &'static str, place: &'static str, holds: bool) -> Expectation {
-                Expectation { text, place, numbers: None, holds }
+                Expectation { text, place, numbers: None, unit: "1", holds }
             }
         }
     });
     let near = expectations().any(|one| matches!(one, Expectation::Near { .. })).then(|| {
         quote! {
             /// Verdict on a value, the value expected and the tolerance.
-            fn near(text: &'static str, place: &'static str, numbers: [f64; 3]) -> Expectation {
+            fn near(text: &'static str, place: &'static str, unit: &'static str, numbers: [f64; 3]) -> Expectation {
                 let [value, expected, tolerance] = numbers;
-                Expectation { text, place, numbers: Some(numbers), holds: (value - expected).abs() <= tolerance }
+                let holds = (value - expected).abs() <= tolerance;
+                Expectation { text, place, numbers: Some(numbers), unit, holds }
             }
         }
     });
@@ -99,9 +100,9 @@ fn run_value(lowering: &mut Lowering<'_>, slots: &Slots, value: &RunValue) -> (T
             let (value, name) = (function(closure(lowering, slots, *of)), &model.events[event.0].name);
             (quote!({ #value record.event_time(#name).map_or(f64::NAN, |t| value(&record.at(t))) }), false)
         }
-        RunValue::Fired(event) => {
+        RunValue::Outcome(event) => {
             let name = &model.events[event.0].name;
-            (quote!(f64::from(u8::from(record.event_time(#name).is_some()))), false)
+            (quote!(f64::from(u8::from(record.outcome() == #name))), false)
         }
     }
 }
@@ -119,7 +120,7 @@ fn one_test(lowering: &mut Lowering<'_>, slots: &Slots, sources: &SourceMap, tes
                 let truth = truth(condition, &roots, results);
                 quote!(holds(#text, #place, #truth))
             }
-            Expectation::Near { .. } => quote!(near(#text, #place, [#(#results),*])),
+            Expectation::Near { unit, .. } => quote!(near(#text, #place, #unit, [#(#results),*])),
         };
         if statements.is_empty() { verdict } else { quote!({ #(#statements)* #verdict }) }
     });

@@ -22,7 +22,7 @@ pub enum Expectation {
     /// A condition.
     Holds(Condition),
     /// Two numbers that agree within an absolute tolerance.
-    Near { value: Id, expected: Id, tolerance: Id },
+    Near { value: Id, expected: Id, tolerance: Id, unit: String },
 }
 
 impl RunTest {
@@ -37,7 +37,7 @@ impl Expectation {
     pub fn roots(&self) -> Vec<Id> {
         match self {
             Expectation::Holds(condition) => condition.scalars(),
-            Expectation::Near { value, expected, tolerance } => vec![*value, *expected, *tolerance],
+            Expectation::Near { value, expected, tolerance, .. } => vec![*value, *expected, *tolerance],
         }
     }
 }
@@ -68,17 +68,26 @@ fn lower_test<'m>(lowering: &mut Lowering<'m>, test: &'m model::Test) -> Lowered
                 expectations.push((*span, Expectation::Holds(lowering.global_condition(condition)?)));
             }
             Check::Near { value, expected, tolerance, percent, span } => {
+                let unit = unit_of(lowering, value);
                 let (value, expected) = (lowering.global_scalar(value)?, lowering.global_scalar(expected)?);
                 let mut tolerance = lowering.global_scalar(tolerance)?;
                 if *percent {
                     let (hundredth, size) = (lowering.pool.constant(0.01), lowering.pool.abs(expected));
                     tolerance = lowering.pool.product([tolerance, hundredth, size]);
                 }
-                expectations.push((*span, Expectation::Near { value, expected, tolerance }));
+                expectations.push((*span, Expectation::Near { value, expected, tolerance, unit }));
             }
         }
     }
     Ok(RunTest { title: test.title.clone(), expectations })
+}
+
+/// Internal unit of a value.
+fn unit_of(lowering: &Lowering<'_>, value: &model::Expr) -> String {
+    match value.ty {
+        model::Type::Value(_, dimension) => lowering.model.units.unit_of(dimension),
+        _ => String::from("1"),
+    }
 }
 
 /// Exchanges rates of observables in what the tests read of single times.
@@ -90,7 +99,7 @@ fn observe_run_values(lowering: &mut Lowering<'_>, rows: &[usize]) -> Lowered<()
             }
             RunValue::AtTime(of, time) => RunValue::AtTime(observed(lowering, rows, of)?, time),
             RunValue::AtEvent(of, event) => RunValue::AtEvent(observed(lowering, rows, of)?, event),
-            fired @ RunValue::Fired(_) => fired,
+            outcome @ RunValue::Outcome(_) => outcome,
         };
         lowering.run_values[k] = observed;
     }

@@ -19,9 +19,9 @@ impl<'m> Lowering<'m> {
             ExprKind::Or(a, b) => both(self, a, b).map(|(a, b)| Condition::Or(a, b)),
             ExprKind::Not(a) => Ok(Condition::Not(Box::new(self.condition(a)?))),
             ExprKind::OutcomeIs(event) => {
-                let fired = self.run_symbol(RunValue::Fired(*event));
+                let outcome = self.run_symbol(RunValue::Outcome(*event));
                 let half = self.pool.constant(0.5);
-                Ok(Condition::Compare(Relation::Greater, fired, half))
+                Ok(Condition::Compare(Relation::Greater, outcome, half))
             }
             ExprKind::Held(..) => {
                 Err(unsupported(expr.span, "`for` stands only in the condition of an event"))

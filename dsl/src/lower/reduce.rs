@@ -17,8 +17,8 @@ pub enum RunValue {
     AtTime(Id, Id),
     /// Value when an event fired first.
     AtEvent(Id, EventId),
-    /// 1 if the event fired, else 0.
-    Fired(EventId),
+    /// 1 if the event is the outcome, else 0.
+    Outcome(EventId),
 }
 
 impl RunValue {
@@ -28,7 +28,7 @@ impl RunValue {
             RunValue::Extreme(_, of, range) => range.iter().flatten().copied().chain([*of]).collect(),
             RunValue::AtTime(of, time) => vec![*of, *time],
             RunValue::AtEvent(of, _) => vec![*of],
-            RunValue::Fired(_) => Vec::new(),
+            RunValue::Outcome(_) => Vec::new(),
         }
     }
 }

@@ -73,6 +73,7 @@ impl Observer for Progress {
         let event = &self.program.events[fired.event];
         let doc = if event.doc.is_empty() { String::new() } else { format!(": {}", event.doc) };
         self.say(&format!("{} at t = {}{doc}", event.name, self.time(fired.time)));
+        super::warnings(event).for_each(|text| self.say(&format!("warning: {text}")));
         Ok(())
     }
 }
@@ -83,7 +84,8 @@ impl Drop for Progress {
     }
 }
 
-fn with_unit(value: f64, unit: &str) -> String {
-    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+/// A number with four digits and its unit, as a person reads it.
+pub fn with_unit(value: f64, unit: &str) -> String {
+    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
     if unit == "1" { display(rounded) } else { format!("{} {unit}", display(rounded)) }
 }

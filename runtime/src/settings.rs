@@ -30,7 +30,8 @@ pub fn resolve(program: &Program, settings: &[(String, String)]) -> Result<Vec<f
 /// [`Error::Parameter`] naming the first parameter that is out of range, and what is allowed.
 pub fn check(program: &Program, g: &[f64], values: &[f64]) -> Result<(), Error> {
     for (parameter, &value) in program.parameters.iter().zip(values) {
-        let shown = |x: f64| format!("{} {}", display(x / parameter.unit_value), parameter.unit);
+        let unit = if parameter.unit == "1" { String::new() } else { format!(" {}", parameter.unit) };
+        let shown = |x: f64| format!("{}{unit}", display(x / parameter.unit_value));
         if let Some(choices) = (parameter.choices)(g) {
             let close = |c: &f64| (c - value).abs() <= 1e-12 * c.abs();
             if !choices.iter().any(close) {
@@ -78,7 +79,9 @@ pub fn display(value: f64) -> String {
 /// # Errors
 /// [`Error::Parameter`] when it is no time.
 pub fn time(program: &Program, text: &str) -> Result<f64, Error> {
-    let wrong = |why: String| Error::Parameter(format!("`{text}` is no time: {why}; write it with a unit, such as \"50 s\""));
+    let wrong = |why: String| {
+        Error::Parameter(format!("`{text}` is no time: {why}; write it with a unit, such as \"50 s\""))
+    };
     let (si, dimension) = parse_quantity(text).map_err(|e| wrong(e.to_string()))?;
     if dimension == Dimension::TIME {
         Ok(si / scale(program, dimension))

@@ -57,7 +57,7 @@ pub fn geometry(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
             for path in [#(#builders),*] {
                 match path {
                     Ok(path) => paths.push(path),
-                    Err(found) => errors.extend(found),
+                    Err(mut found) => errors.append(&mut found),
                 }
             }
             let regions = Vec::from([#(#regions),*]);

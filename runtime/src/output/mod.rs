@@ -28,3 +28,16 @@ fn warnings(event: &Event) -> impl Iterator<Item = &'static str> {
 fn cannot_write(path: &Path, cause: &dyn std::fmt::Display) -> Error {
     Error::Output { path: path.to_path_buf(), cause: cause.to_string() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generated::Trigger;
+
+    #[test]
+    fn an_event_warns_of_all_its_texts_in_order() {
+        let actions = &[Action::Warn("low"), Action::Stop, Action::Warn("lower")];
+        let event = Event { name: "empty", doc: "", trigger: Trigger::EveryStep, actions };
+        assert_eq!(warnings(&event).collect::<Vec<_>>(), ["low", "lower"]);
+    }
+}

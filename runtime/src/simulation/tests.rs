@@ -252,3 +252,67 @@ fn a_model_without_time_is_solved_once() {
     assert!(rest.record().steps()[0][6].abs() < 1e-12);
     assert_eq!((notes.rows.len(), notes.frames.len()), (1, 1));
 }
+
+/// x' = -x from 1 and w = x^2; at x = 1/2 an event sets x to 2.
+static STATES: Program = Program {
+    layout: Layout {
+        states: [2, 4],
+        state_rates: [4, 6],
+        functionals: [6, 6],
+        functional_rates: [6, 6],
+        observables: [6, 6],
+        length: 6,
+        ..LAYOUT
+    },
+    fields: &[],
+    states: &[
+        State { name: "x", unit: "1", start: Start::Fixed, value: |_| 1.0, bounds: |_| EVERYWHERE },
+        State { name: "w", unit: "1", start: Start::Solved, value: |_| 0.0, bounds: |_| EVERYWHERE },
+    ],
+    functionals: &[],
+    blocks: &[],
+    integrals: &[],
+    state_system: Some(StateSystem {
+        switches: 0,
+        places: &["model:1", "model:2"],
+        differential: &[true, false],
+        algebraic_equations: &[false, true],
+        switch: |_, _| {},
+        residual: |g, _, out| out.copy_from_slice(&[g[4] + g[2], g[3] - g[2] * g[2]]),
+        jacobian: |g, _, alpha, out| out.copy_from_slice(&[1.0 + alpha, 0.0, -2.0 * g[2], 1.0]),
+        sensitivity: |_, _, _, _| {},
+    }),
+    observables: &[],
+    events: &[Event {
+        name: "halved",
+        doc: "",
+        trigger: Trigger::When { condition: |g| 0.5 - g[2], duration: |_| 0.0, also: |_| 1.0 },
+        actions: &[Action::Set(0, |_| 2.0)],
+    }],
+    tables: &[],
+    frames: &[],
+    ..program(|_| SOLVE)
+};
+
+const EVERYWHERE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+
+#[test]
+fn states_alone_run_and_follow_at_once_when_one_is_set() {
+    let mut states = Simulation::new(&STATES, &[0.0]).unwrap();
+    assert_eq!(states.run(&mut Notes::default(), None).unwrap(), "finished");
+    let record = states.record();
+    let jump = record.event_time("halved").unwrap();
+    assert!((jump - std::f64::consts::LN_2).abs() < 1e-4, "{jump}");
+    let after = record.steps().iter().find(|g| g[2] > 1.5).unwrap();
+    assert!(after[1] == jump && (after[3] - 4.0).abs() < 1e-12, "{after:?}");
+    let end = record.steps().last().unwrap();
+    // Local errors up to 1e-5 in each of some 100 steps, damped by the decay.
+    assert!((end[2] - 2.0 * (jump - 2.0).exp()).abs() < 1e-3, "{end:?}");
+}
+
+#[test]
+fn a_time_that_ends_before_it_starts_is_refused() {
+    static BACKWARDS: Program = program(|_| Solve { time: Some((2.0, 1.0)), ..SOLVE });
+    let refused = Simulation::on_mesh(&BACKWARDS, &[0.0], structured_rectangle(1, 1, |x, y| [x, y]));
+    assert!(matches!(refused.err(), Some(Error::Model(text)) if text.contains("after it starts")));
+}

@@ -4,7 +4,7 @@ use crate::inline::{Input, Refusal};
 use ansatz_dsl::compile::{Compilation, Output, compile};
 use ansatz_dsl::diagnostic::{Diagnostic, Severity, render};
 use ansatz_dsl::resolve::extend::Loaded;
-use proc_macro::{Group, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
+use proc_macro::{Delimiter, Group, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
 use std::path::{Path, PathBuf};
 
 /// The module of a model, or its errors.
@@ -49,21 +49,35 @@ fn absolute(file: &Path) -> String {
     file.canonicalize().unwrap_or_else(|_| file.to_path_buf()).display().to_string()
 }
 
-/// One `compile_error!` for each error of an inline model, on its token; one for all errors of a file.
+/// One `compile_error!` for each error of an inline model, on its words; one for all errors of a file.
 fn errors(compilation: &Compilation, input: &Input) -> TokenStream {
-    let errors: Vec<&Diagnostic> =
-        compilation.diagnostics.iter().filter(|d| d.severity == Severity::Error).collect();
+    let rendered = |diagnostics: &[Diagnostic]| render(diagnostics, &compilation.sources);
     if input.in_file {
-        let text = render(&compilation.diagnostics, &compilation.sources);
+        let text = format!("in the model `{}`\n\n{}", input.name, rendered(&compilation.diagnostics));
         return compile_error(&text, Span::call_site());
     }
+    let errors = compilation.diagnostics.iter().filter(|d| d.severity == Severity::Error);
     errors
-        .into_iter()
         .map(|error| {
-            let text = render(std::slice::from_ref(error), &compilation.sources);
-            compile_error(&text, token_at(input, error.primary.range().start))
+            let text = rendered(std::slice::from_ref(error));
+            compile_error_between(&without_frame(&text), words(error, compilation, input))
         })
         .collect()
+}
+
+/// The text of one error without what `rustc` says itself: that it is an error, and how many there are.
+fn without_frame(text: &str) -> String {
+    let text = text.trim_end();
+    let text = text.strip_suffix("1 error").unwrap_or(text).trim_end();
+    text.strip_prefix("error[").map_or_else(|| text.into(), |rest| rest.replacen("]: ", ": ", 1))
+}
+
+/// Spans of the first and the last token that an error points at; those of the macro for an error in another file.
+fn words(error: &Diagnostic, compilation: &Compilation, input: &Input) -> [Span; 2] {
+    let here = compilation.sources.get(error.primary.source).is_some_and(|source| source.name == input.name);
+    let range = error.primary.range();
+    let last = range.end.saturating_sub(1).max(range.start);
+    if here { [range.start, last].map(|byte| token_at(input, byte)) } else { [Span::call_site(); 2] }
 }
 
 /// Span of the last token that starts at or before a byte.
@@ -73,12 +87,15 @@ fn token_at(input: &Input, byte: usize) -> Span {
 }
 
 fn compile_error(message: &str, span: Span) -> TokenStream {
-    let mut text = Literal::string(message);
-    text.set_span(span);
-    let mut arguments = Group::new(proc_macro::Delimiter::Brace, TokenStream::from(TokenTree::from(text)));
-    arguments.set_span(span);
-    let mut bang = Punct::new('!', Spacing::Alone);
-    bang.set_span(span);
-    let name = Ident::new("compile_error", span);
+    compile_error_between(message, [span; 2])
+}
+
+/// `compile_error! { message }`, underlined from the start of the first span to the end of the second.
+fn compile_error_between(message: &str, [first, last]: [Span; 2]) -> TokenStream {
+    let text = TokenStream::from(TokenTree::from(Literal::string(message)));
+    let (name, mut bang) = (Ident::new("compile_error", first), Punct::new('!', Spacing::Alone));
+    let mut arguments = Group::new(Delimiter::Brace, text);
+    bang.set_span(first);
+    arguments.set_span(last);
     [TokenTree::from(name), TokenTree::from(bang), TokenTree::from(arguments)].into_iter().collect()
 }

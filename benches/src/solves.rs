@@ -11,6 +11,8 @@ pub struct Solved {
     pub results: Vec<f64>,
     /// Newton iterations of each step.
     pub iterations: Vec<usize>,
+    /// Newton iterations of the whole run, those that measure the rates at the start included.
+    pub total: usize,
 }
 
 /// A problem ready to be solved.
@@ -61,7 +63,8 @@ impl Solve {
     pub fn run(&mut self) -> Result<Solved, Error> {
         let mut notes = Notes::default();
         self.simulation.run(&mut notes, None)?;
-        Ok(Solved { results: notes.row, iterations: notes.iterations })
+        let total = self.simulation.record().statistics().iterations;
+        Ok(Solved { results: notes.row, iterations: notes.iterations, total })
     }
 }
 

@@ -1,0 +1,91 @@
+//! What must hold for any elastic solid, on unstructured meshes and from the law to the solution.
+
+use ansatz::generated::{BATCH, Integral, Kernel, Program};
+use ansatz_tests::models::{patch_axi, patch_plane};
+use ansatz_tests::notes::Notes;
+use ansatz_tests::sample::{Elements, Random, globals};
+
+/// The largest deviation from the uniform deformation at any time, which the model writes into its table.
+fn deviation(program: &'static Program, values: &[f64]) -> f64 {
+    let mut simulation = ansatz::Simulation::new(program, values).unwrap();
+    assert!(simulation.system().mesh.cells.len() > 20, "there is an inside");
+    let mut notes = Notes::default();
+    simulation.run(&mut notes, None).unwrap();
+    assert!(notes.rows.len() > 4);
+    notes.rows.iter().map(|(_, row)| row[0]).fold(0.0, f64::max)
+}
+
+// The displacements are up to 2 mm: 1e-12 mm leaves rounding of some 2000 units in the last place.
+#[test]
+fn a_uniform_deformation_of_the_boundary_goes_on_inside() {
+    let plane = deviation(&patch_plane::PROGRAM, &patch_plane::Parameters::default().values());
+    assert!(plane < 1e-12, "{plane:e}");
+    let axisymmetric = deviation(&patch_axi::PROGRAM, &patch_axi::Parameters::default().values());
+    assert!(axisymmetric < 1e-12, "{axisymmetric:e}");
+}
+
+/// An elasticity energy with random elements of moderate strain.
+fn energy(program: &'static Program) -> (&'static Integral, Kernel, Elements, Vec<f64>) {
+    let integral =
+        program.integrals.iter().find(|i| i.name.contains("elasticity")).expect("an elasticity block");
+    let value = integral.value.expect("it is an energy");
+    let mut random = Random::new(1);
+    let g = globals(program, &mut random);
+    let elements = Elements::new(program, integral, &g, &mut random);
+    (integral, value, elements, g)
+}
+
+fn values(kernel: Kernel, elements: &Elements, g: &[f64], rows: usize) -> Vec<[f64; BATCH]> {
+    let mut out = vec![[0.0; BATCH]; rows];
+    kernel(&elements.batch(), g, &mut out);
+    out
+}
+
+/// Adds a function of the deformed position to every node's displacement.
+fn moved(elements: &Elements, by: impl Fn([f64; 2]) -> [f64; 2]) -> Elements {
+    let mut displacements = elements.values.clone();
+    for node in 0..displacements.len() / 2 {
+        for lane in 0..BATCH {
+            let x = [0, 1].map(|i| elements.nodes[2 * node + i][lane] + displacements[2 * node + i][lane]);
+            let shift = by(x);
+            (0..2).for_each(|i| displacements[2 * node + i][lane] += shift[i]);
+        }
+    }
+    Elements {
+        nodes: elements.nodes.clone(),
+        values: displacements,
+        rates: elements.rates.clone(),
+        ..*elements
+    }
+}
+
+#[track_caller]
+fn assert_same(a: &[[f64; BATCH]], b: &[[f64; BATCH]]) {
+    let scale = a.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+    assert!(scale > 1e-3, "the elements are strained");
+    let close = a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| (a - b).abs() <= 1e-12 * scale);
+    assert!(close, "{a:?}\n{b:?}");
+}
+
+#[test]
+fn a_turn_leaves_the_energy_and_turns_the_forces() {
+    let (integral, value, elements, g) = energy(&patch_plane::PROGRAM);
+    let (sine, cosine) = 0.7_f64.sin_cos();
+    let turn = |x: [f64; 2]| [cosine * x[0] - sine * x[1], sine * x[0] + cosine * x[1]];
+    let turned = moved(&elements, |x| [turn(x)[0] - x[0] + 3.0, turn(x)[1] - x[1] - 1.0]);
+    assert_same(&values(value, &elements, &g, 1), &values(value, &turned, &g, 1));
+    let forces = values(integral.residual, &elements, &g, 12);
+    let expected: Vec<[f64; BATCH]> = forces
+        .chunks(2)
+        .flat_map(|f| [0, 1].map(|i| std::array::from_fn(|lane| turn([f[0][lane], f[1][lane]])[i])))
+        .collect();
+    assert_same(&expected, &values(integral.residual, &turned, &g, 12));
+}
+
+#[test]
+fn a_shift_along_the_axis_leaves_the_energy_and_the_forces_of_the_dry_model() {
+    let (integral, value, elements, g) = energy(&ansatz_models::dry_contact::PROGRAM);
+    let shifted = moved(&elements, |_| [0.0, 2.5]);
+    assert_same(&values(value, &elements, &g, 1), &values(value, &shifted, &g, 1));
+    assert_same(&values(integral.residual, &elements, &g, 12), &values(integral.residual, &shifted, &g, 12));
+}

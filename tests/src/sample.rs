@@ -12,14 +12,14 @@ impl Random {
     }
 
     /// The next number in -1 .. 1.
-    pub fn next(&mut self) -> f64 {
+    pub fn signed(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
     /// The next number in `low .. high`.
     pub fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * 0.5 * (self.next() + 1.0)
+        low + (high - low) * 0.5 * (self.signed() + 1.0)
     }
 }
 
@@ -65,12 +65,12 @@ impl Elements {
         let corners: &[[f64; 2]] =
             if cells { &[[1.0, 0.0], [2.0, 0.2], [1.3, 1.1]] } else { &[[1.0, 0.0], [2.0, 0.3]] };
         let mut nodes: Vec<[[f64; BATCH]; 2]> =
-            corners.iter().map(|c| c.map(|x| [(); BATCH].map(|()| x + 0.1 * random.next()))).collect();
+            corners.iter().map(|c| c.map(|x| [(); BATCH].map(|()| x + 0.1 * random.signed()))).collect();
         let edges: &[[usize; 2]] = if cells { &[[0, 1], [1, 2], [2, 0]] } else { &[[0, 1]] };
         for [a, b] in edges {
             let middle =
                 |i: usize| std::array::from_fn(|lane| 0.5 * (nodes[*a][i][lane] + nodes[*b][i][lane]));
-            let bent = [middle(0), middle(1)].map(|row: [f64; BATCH]| row.map(|x| x + 0.02 * random.next()));
+            let bent = [middle(0), middle(1)].map(|row: [f64; BATCH]| row.map(|x| x + 0.02 * random.signed()));
             nodes.push(bent);
         }
         let mut values = Vec::new();
@@ -84,11 +84,11 @@ impl Elements {
                 let mut start = vec![0.0; field.components];
                 (field.start)([node[0][0], node[1][0]], g, &mut start);
                 values.extend(
-                    start.iter().map(|&x| [(); BATCH].map(|()| x + 0.05 * x.abs().max(1.0) * random.next())),
+                    start.iter().map(|&x| [(); BATCH].map(|()| x + 0.05 * x.abs().max(1.0) * random.signed())),
                 );
             }
         }
-        let rates = values.iter().map(|row| row.map(|_| 0.3 * random.next())).collect();
+        let rates = values.iter().map(|row| row.map(|_| 0.3 * random.signed())).collect();
         let region = (random.within(0.0, regions as f64) as usize).min(regions - 1);
         Self {
             region,

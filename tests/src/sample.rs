@@ -70,7 +70,8 @@ impl Elements {
         for [a, b] in edges {
             let middle =
                 |i: usize| std::array::from_fn(|lane| 0.5 * (nodes[*a][i][lane] + nodes[*b][i][lane]));
-            let bent = [middle(0), middle(1)].map(|row: [f64; BATCH]| row.map(|x| x + 0.02 * random.signed()));
+            let bent =
+                [middle(0), middle(1)].map(|row: [f64; BATCH]| row.map(|x| x + 0.02 * random.signed()));
             nodes.push(bent);
         }
         let mut values = Vec::new();
@@ -84,7 +85,9 @@ impl Elements {
                 let mut start = vec![0.0; field.components];
                 (field.start)([node[0][0], node[1][0]], g, &mut start);
                 values.extend(
-                    start.iter().map(|&x| [(); BATCH].map(|()| x + 0.05 * x.abs().max(1.0) * random.signed())),
+                    start
+                        .iter()
+                        .map(|&x| [(); BATCH].map(|()| x + 0.05 * x.abs().max(1.0) * random.signed())),
                 );
             }
         }

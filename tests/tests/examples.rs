@@ -5,8 +5,8 @@ use ansatz::generated::{Program, Record};
 use ansatz_tests::notes::Notes;
 
 fn ran(program: &'static Program) -> (Simulation, Notes) {
-    let values = ansatz::settings::resolve(program, &[]).unwrap();
-    let mut simulation = Simulation::new(program, &values).unwrap();
+    let values = ansatz::settings::resolve(program, &[]).expect("defaults are valid");
+    let mut simulation = Simulation::new(program, &values).expect("the example can be built");
     let mut notes = Notes::default();
     simulation.run(&mut notes, None).unwrap_or_else(|error| panic!("{}: {error}", program.name));
     (simulation, notes)

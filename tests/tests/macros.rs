@@ -8,6 +8,7 @@ ansatz::model! {
     use std::solid::{F, neo_hooke};
     coordinates plane_strain(x, y);
     param a = 1 m in 0.1 m .. 10 m;
+    param weight_density = 10 [kN/m^3];
     geometry {
         path edge   = from (0, 0) m line bottom to (a, 0) line to (a, a) line top to (0, a) line to (0, 0) m;
         region body = loop(edge);
@@ -16,7 +17,7 @@ ansatz::model! {
     field u: Vector[Length] in P2 on body = 0;
     physics weight {
         energy neo_hooke(F(u), 1 MPa, 0.3) on body;
-        load u.y with -10 [kN/m^3] on body;           // comments are no tokens
+        load u.y with -weight_density on body;          // comments are no tokens
         hold u = 0 on edge.bottom;
     }
     let sink = -mean(u.y on edge.top);
@@ -31,6 +32,7 @@ fn a_model_between_braces_is_a_module() {
     let parameters = cube::Parameters { a: 2.0, ..Default::default() };
     let mut simulation = cube::simulation(&parameters).unwrap();
     assert_eq!(simulation.run(&mut Quiet, None).unwrap(), "finished");
-    let error = cube::simulation(&cube::Parameters { a: 20.0 }).err().expect("out of range");
+    let error =
+        cube::simulation(&cube::Parameters { a: 20.0, ..Default::default() }).err().expect("out of range");
     assert!(error.to_string().contains("`a` = 20 m is out of its range"), "{error}");
 }

@@ -7,10 +7,10 @@ use ansatz_tests::sample::{Elements, Random, globals};
 
 /// The largest deviation from the uniform deformation at any time, which the model writes into its table.
 fn deviation(program: &'static Program, values: &[f64]) -> f64 {
-    let mut simulation = ansatz::Simulation::new(program, values).unwrap();
+    let mut simulation = ansatz::Simulation::new(program, values).expect("the model can be built");
     assert!(simulation.system().mesh.cells.len() > 20, "there is an inside");
     let mut notes = Notes::default();
-    simulation.run(&mut notes, None).unwrap();
+    simulation.run(&mut notes, None).expect("the run reaches its end");
     assert!(notes.rows.len() > 4);
     notes.rows.iter().map(|(_, row)| row[0]).fold(0.0, f64::max)
 }
@@ -44,11 +44,10 @@ fn values(kernel: Kernel, elements: &Elements, g: &[f64], rows: usize) -> Vec<[f
 /// Adds a function of the deformed position to every node's displacement.
 fn moved(elements: &Elements, by: impl Fn([f64; 2]) -> [f64; 2]) -> Elements {
     let mut displacements = elements.values.clone();
-    for node in 0..displacements.len() / 2 {
+    for (position, displacement) in elements.nodes.chunks(2).zip(displacements.chunks_mut(2)) {
         for lane in 0..BATCH {
-            let x = [0, 1].map(|i| elements.nodes[2 * node + i][lane] + displacements[2 * node + i][lane]);
-            let shift = by(x);
-            (0..2).for_each(|i| displacements[2 * node + i][lane] += shift[i]);
+            let shift = by([0, 1].map(|i: usize| position[i][lane] + displacement[i][lane]));
+            (0..2).for_each(|i| displacement[i][lane] += shift[i]);
         }
     }
     Elements {

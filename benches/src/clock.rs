@@ -35,7 +35,7 @@ fn account() -> Option<f64> {
     Some(1e-9 * nanoseconds)
 }
 
-/// Median time of one call [s], after a first call that does not count.
+/// Median time of one call \[s\], after a first call that does not count.
 pub fn median(mut call: impl FnMut()) -> f64 {
     call();
     let mut times: Vec<f64> = (0..RUNS).map(|_| mean_of_a_run(&mut call)).collect();

@@ -3,8 +3,8 @@
 //! | | module | problem |
 //! |---|---|---|
 //! | P1 | [`assembly`] | residual and tangent of a neo-Hookean solid, plane and axisymmetric |
-//! | P2 | [`solves::cook`] | Cook's membrane |
-//! | P4 | [`solves::sphere`] | a rigid sphere pressed into a cylinder |
+//! | P2 | `solves::cook` | Cook's membrane |
+//! | P4 | `solves::sphere` | a rigid sphere pressed into a cylinder |
 //!
 //! Meshes, loads and laws are those of the peers whose figures ours are compared with, node by node.
 

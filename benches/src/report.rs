@@ -84,7 +84,7 @@ pub fn compiler(file: &Path) -> Result<Value, String> {
     Ok(line)
 }
 
-/// A whole run of the dry model to a time [s].
+/// A whole run of the dry model to a time \[s\].
 ///
 /// # Errors
 /// If the run fails.

@@ -243,7 +243,7 @@ pub struct Pair {
     pub name: String,
     pub first: Domain,
     pub second: Domain,
-    /// Search distance [length].
+    /// Search distance \[length\].
     pub search: Expr,
     pub span: Span,
 }

@@ -235,7 +235,7 @@ pub struct Integral {
     pub global_tangent: Option<GlobalTangent>,
 }
 
-/// d residual / d g[slot]: `kernel` writes n rows for each slot, rates of a slot included with `alpha`.
+/// d residual / d g\[slot\]: `kernel` writes n rows for each slot, rates of a slot included with `alpha`.
 #[allow(missing_docs)]
 pub struct GlobalTangent {
     /// Slots within states and functionals.

@@ -177,7 +177,7 @@ pub enum ExprKind {
     /// A number in the model's coherent units; a literal 0 may have any shape and then means all components.
     Number(f64),
     Param(ParamId),
-    /// A `let` of the file, of the geometry, or of a block; its value is in [`Model::lets`].
+    /// A `let` of the file, of the geometry, or of a block; its value is in [`Model::lets`](super::Model::lets).
     Let(LetId),
     /// Function argument, function-local let, or loop variable of a test.
     Local(LocalId),
@@ -236,7 +236,7 @@ pub enum ExprKind {
     ReduceRun(Reduction, Box<Expr>, Option<(Box<Expr>, Box<Expr>)>),
     /// `area(D)`, `volume(D)`, `length(D)`: the reference measure.
     Measure(Domain),
-    /// `force(block, D)`: resultant that a block puts on a surface [force].
+    /// `force(block, D)`: resultant that a block puts on a surface \[force\].
     Force(BlockId, Domain),
     /// `pair.gap`: signed distance, negative when penetrating.
     Gap(PairId),

@@ -25,7 +25,7 @@ pub struct Run {
     pub matrix_entries: usize,
     /// Events (name, time) in the order in which they fired.
     pub events: Vec<(String, f64)>,
-    /// Wall-clock time [s].
+    /// Wall-clock time \[s\].
     pub wall_seconds: f64,
     /// Why it ended early.
     pub error: Option<String>,

@@ -15,7 +15,7 @@ const NUDGE: f64 = 1e-6;
 pub struct Place {
     /// Cell of the mesh.
     pub cell: usize,
-    /// Reference position of the point [length].
+    /// Reference position of the point \[length\].
     pub x: [f64; 2],
     /// Quadratic basis: value and derivative in both reference directions of space, per node.
     quadratic: Vec<[f64; 3]>,

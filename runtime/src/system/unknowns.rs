@@ -18,7 +18,7 @@ pub struct FieldNumbers {
     pub components: usize,
     /// Nodes of a cell that carry unknowns: 3 (linear) or 6 (quadratic).
     pub nodes_per_cell: usize,
-    /// Position of each mesh node in `nodes`, or [`NONE`].
+    /// Position of each mesh node in `nodes`, or `NONE`.
     pub position: Vec<u32>,
     /// Mesh nodes that carry unknowns, ascending.
     pub nodes: Vec<u32>,

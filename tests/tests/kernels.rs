@@ -272,3 +272,16 @@ fn energies_have_symmetric_tangents_and_a_stress_without_energy_has_not() {
     let stress = printed.integrals.iter().find(|i| i.name.contains("elasticity")).expect("the stress");
     assert!(!stress.symmetric);
 }
+
+#[test]
+fn only_a_stress_without_energy_makes_the_matrix_unsymmetric() {
+    for program in programs() {
+        let mut values = ansatz::settings::resolve(program, &[]).expect("defaults are valid");
+        if let Some(coarse) = program.parameters.iter().position(|p| p.name == "coarse") {
+            values[coarse] = 4.0;
+        }
+        let Ok(simulation) = ansatz::Simulation::new(program, &values) else { continue };
+        let symmetric = simulation.system().is_symmetric();
+        assert_eq!(symmetric, program.name != "dry_printed", "{}", program.name);
+    }
+}

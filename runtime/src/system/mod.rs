@@ -96,8 +96,7 @@ impl System {
             .collect::<Result<_, _>>()?;
         let pairs = contact::prepare(program, &mesh, &g)?;
         let observables = observables::prepare(program, &mesh, &unknowns, &g)?;
-        let curved = functionals.iter().flat_map(|f| f.terms()).filter(|t| t.integral.tangent.is_some());
-        let symmetric = terms.iter().chain(curved).all(|t| t.integral.symmetric);
+        let symmetric = in_the_matrix(&terms, &functionals).all(|t| t.integral.symmetric);
         let kind = if symmetric { MatrixKind::Symmetric } else { MatrixKind::Unsymmetric };
         let pattern = SparsePattern::from_elements(free.len(), kind, []);
         let solver = analyse(&pattern, functionals.len())?;
@@ -148,11 +147,15 @@ impl System {
         self.pattern.entries()
     }
 
+    /// Whether the matrix is symmetric, outer products of functionals apart.
+    pub fn is_symmetric(&self) -> bool {
+        self.kind == MatrixKind::Symmetric
+    }
+
     /// Collects who couples to whom at `y` and analyses the matrix anew.
     fn rebuild_pattern(&mut self, y: &[f64]) -> Result<(), Error> {
         let mut groups: Vec<Vec<u32>> = Vec::new();
-        let curved = self.functionals.iter().flat_map(|f| f.terms()).filter(|t| t.integral.tangent.is_some());
-        for term in self.terms.iter().chain(curved) {
+        for term in in_the_matrix(&self.terms, &self.functionals) {
             groups.extend(term.elements.element_unknowns());
         }
         for pair in &mut self.pairs {
@@ -170,16 +173,20 @@ impl System {
         self.factored = None;
         let diagonal = (0..self.free.len() as u32).filter_map(|i| self.pattern.position(i, i));
         self.diagonal = diagonal.collect();
-        for term in &mut self.terms {
-            term.locate(&self.pattern, &self.equations);
-        }
-        for term in self.functionals.iter_mut().flat_map(|f| f.terms_mut()) {
+        let of_functionals = self.functionals.iter_mut().flat_map(|f| f.terms_mut());
+        for term in self.terms.iter_mut().chain(of_functionals) {
             if term.integral.tangent.is_some() {
                 term.locate(&self.pattern, &self.equations);
             }
         }
         Ok(())
     }
+}
+
+/// Terms that have a tangent: neither dead loads nor linear functionals.
+fn in_the_matrix<'a>(terms: &'a [Term], functionals: &'a [FunctionalOn]) -> impl Iterator<Item = &'a Term> {
+    let of_functionals = functionals.iter().flat_map(|f| f.terms());
+    terms.iter().chain(of_functionals).filter(|term| term.integral.tangent.is_some())
 }
 
 /// A solver for the pattern. Without any equation it is one for a single equation, which is never asked.

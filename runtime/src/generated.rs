@@ -235,11 +235,11 @@ pub struct Integral {
     pub global_tangent: Option<GlobalTangent>,
 }
 
-/// d residual / d g\[slot\]: `kernel` writes n rows for each slot, rates of a slot included with `alpha`.
-#[allow(missing_docs)]
+/// Derivative of a residual with respect to some states and functionals.
 pub struct GlobalTangent {
-    /// Slots within states and functionals.
+    /// Which ones: the states are numbered first, then the functionals.
     pub slots: &'static [usize],
+    /// Writes n rows for each of them, its rate included with `alpha`.
     pub kernel: Kernel,
 }
 

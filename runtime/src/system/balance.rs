@@ -198,8 +198,7 @@ impl System {
         of_states: &[f64],
         columns: &mut [Vec<f64>],
     ) {
-        let layout = self.program.layout;
-        let count = columns.len();
+        let (states, count) = (self.program.states.len(), columns.len());
         let at = At { y, rates, g: &self.g, alpha };
         for term in &mut self.terms {
             let Some(tangent) = &term.integral.global_tangent else { continue };
@@ -207,10 +206,9 @@ impl System {
             term.add_global_tangent(at, tangent, &mut by_slot);
             for (slot, by) in tangent.slots.iter().zip(&by_slot) {
                 for (j, column) in columns.iter_mut().enumerate() {
-                    let factor = if *slot >= layout.functionals[0] {
-                        f64::from(u8::from(slot - layout.functionals[0] == j))
-                    } else {
-                        of_states[(slot - layout.states[0]) * count + j]
+                    let factor = match slot.checked_sub(states) {
+                        Some(functional) => f64::from(u8::from(functional == j)),
+                        None => of_states[slot * count + j],
                     };
                     add(column, factor, by);
                 }

@@ -5,6 +5,7 @@ use super::balance::Balance;
 use super::contact::Curvature;
 use super::newton::StageProblem;
 use super::terms::At;
+use super::unknowns::NONE;
 use crate::error::Cause;
 
 /// The equations at one point y. Vectors have one entry for each unknown of y.
@@ -44,6 +45,11 @@ impl Probe<'_> {
     /// Assembles residual and tangent, as one iteration of Newton's method does.
     pub fn assemble(&mut self) {
         self.balance = self.system.linearise(&self.y, &self.rates, self.alpha, Curvature::Kept);
+    }
+
+    /// Whether a field unknown is solved for; else a condition holds it.
+    pub fn is_free(&self, unknown: usize) -> bool {
+        self.system.equations[unknown] != NONE
     }
 
     /// Product of the tangent last assembled with a vector; rows and columns of held unknowns are zero.

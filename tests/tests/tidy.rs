@@ -24,9 +24,13 @@ fn crates_depend_only_on_those_below_them() {
         ("units", &[][..]),
         ("elements", &[][..]),
         ("geometry", &[][..]),
+        ("frontal", &[][..]),
         ("dsl", &["ansatz-units", "ansatz-elements", "ansatz-geometry"][..]),
         ("macros", &["ansatz-dsl"][..]),
-        ("runtime", &["ansatz-units", "ansatz-elements", "ansatz-geometry", "ansatz-macros"][..]),
+        (
+            "runtime",
+            &["ansatz-units", "ansatz-elements", "ansatz-geometry", "ansatz-frontal", "ansatz-macros"][..],
+        ),
         ("models", &["ansatz"][..]),
         ("cli", &["ansatz-dsl"][..]),
     ]);
@@ -64,7 +68,7 @@ fn no_file_holds_two_subjects_worth_of_lines() {
 #[test]
 fn every_file_of_a_library_says_what_it_is() {
     let mut files = Vec::new();
-    for folder in ["units", "elements", "geometry", "dsl", "macros", "runtime", "models", "cli"] {
+    for folder in ["units", "elements", "geometry", "frontal", "dsl", "macros", "runtime", "models", "cli"] {
         rust_files(&root().join(folder).join("src"), &mut files);
     }
     let is_test =

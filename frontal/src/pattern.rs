@@ -1,0 +1,139 @@
+//! The pattern of a sparse matrix as callers hand it over, and the graph that orderings work on.
+
+/// Whether a matrix equals its transpose, which decides what is stored and how it is factored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Positive definite, only the lower triangle stored: Cholesky.
+    Symmetric,
+    /// All entries stored; the pattern is that of a symmetric matrix or nearly so: LU.
+    Unsymmetric,
+}
+
+/// Positions of the entries of a square matrix in compressed columns, borrowed.
+#[derive(Clone, Copy, Debug)]
+pub struct Pattern<'a> {
+    /// What is stored.
+    pub kind: Kind,
+    /// Start of every column in `rows`; one more than there are columns.
+    pub starts: &'a [u32],
+    /// Row of every entry.
+    pub rows: &'a [u32],
+}
+
+impl Pattern<'_> {
+    /// Number of equations.
+    pub fn size(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Range of the entries of a column.
+    pub fn column(&self, column: usize) -> std::ops::Range<usize> {
+        self.starts[column] as usize..self.starts[column + 1] as usize
+    }
+
+    /// Calls `visit(position, row, column)` for every entry, column by column.
+    pub fn for_each(&self, mut visit: impl FnMut(usize, usize, usize)) {
+        for column in 0..self.size() {
+            for position in self.column(column) {
+                visit(position, self.rows[position] as usize, column);
+            }
+        }
+    }
+
+    /// Subtracts the product: `y -= A x`, with `values` the entries of `A`.
+    pub fn subtract_product(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
+        for (column, &factor) in x.iter().enumerate() {
+            let range = self.column(column);
+            let entries = self.rows[range.clone()].iter().zip(&values[range]);
+            match self.kind {
+                Kind::Unsymmetric => entries.for_each(|(&row, a)| y[row as usize] -= a * factor),
+                Kind::Symmetric => {
+                    let mut dot = 0.0;
+                    for (&row, a) in entries {
+                        if row as usize == column {
+                            dot += a * factor;
+                        } else {
+                            y[row as usize] -= a * factor;
+                            dot += a * x[row as usize];
+                        }
+                    }
+                    y[column] -= dot;
+                }
+            }
+        }
+    }
+}
+
+/// Undirected graph without loops: the neighbours of every node, ascending.
+#[derive(Clone, Debug)]
+pub(crate) struct Graph {
+    pub starts: Vec<u32>,
+    pub neighbours: Vec<u32>,
+}
+
+impl Graph {
+    /// The equations that share an entry above or below the diagonal.
+    pub fn of(pattern: Pattern<'_>) -> Self {
+        let size = pattern.size();
+        let mut starts = vec![0_u32; size + 1];
+        pattern.for_each(|_, row, column| {
+            if row != column {
+                starts[row + 1] += 1;
+                starts[column + 1] += 1;
+            }
+        });
+        (0..size).for_each(|k| starts[k + 1] += starts[k]);
+        let mut next = starts.clone();
+        let mut neighbours = vec![0; starts[size] as usize];
+        let mut add = |from: usize, to: usize| {
+            neighbours[next[from] as usize] = to as u32;
+            next[from] += 1;
+        };
+        pattern.for_each(|_, row, column| {
+            if row != column {
+                add(row, column);
+                add(column, row);
+            }
+        });
+        Self { starts, neighbours }.without_repetitions()
+    }
+
+    fn without_repetitions(mut self) -> Self {
+        let mut kept = 0;
+        for node in 0..self.size() {
+            let range = self.starts[node] as usize..self.starts[node + 1] as usize;
+            self.neighbours[range.clone()].sort_unstable();
+            self.starts[node] = kept as u32;
+            for k in range {
+                let first = kept == self.starts[node] as usize;
+                if first || self.neighbours[kept - 1] != self.neighbours[k] {
+                    self.neighbours[kept] = self.neighbours[k];
+                    kept += 1;
+                }
+            }
+        }
+        let size = self.size();
+        self.starts[size] = kept as u32;
+        self.neighbours.truncate(kept);
+        self
+    }
+
+    /// Number of nodes.
+    pub fn size(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Neighbours of a node, ascending.
+    pub fn around(&self, node: usize) -> &[u32] {
+        &self.neighbours[self.starts[node] as usize..self.starts[node + 1] as usize]
+    }
+}
+
+/// The inverse of a permutation.
+pub(crate) fn inverse(order: &[u32]) -> Vec<u32> {
+    let mut place = vec![0; order.len()];
+    for (new, &old) in order.iter().enumerate() {
+        place[old as usize] = new as u32;
+    }
+    place
+}

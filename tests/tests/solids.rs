@@ -1,7 +1,7 @@
 //! What must hold for any elastic solid, on unstructured meshes and from the law to the solution.
 
 use ansatz::generated::{BATCH, Integral, Kernel, Program};
-use ansatz_tests::models::{patch_axi, patch_plane};
+use ansatz_tests::models::{named_axis, patch_axi, patch_plane};
 use ansatz_tests::notes::Notes;
 use ansatz_tests::sample::{Elements, Random, globals};
 
@@ -22,6 +22,17 @@ fn a_uniform_deformation_of_the_boundary_goes_on_inside() {
     assert!(plane < 1e-12, "{plane:e}");
     let axisymmetric = deviation(&patch_axi::PROGRAM, &patch_axi::Parameters::default().values());
     assert!(axisymmetric < 1e-12, "{axisymmetric:e}");
+}
+
+#[test]
+fn nothing_leaves_the_axis_whatever_path_leads_along_it() {
+    let values = named_axis::Parameters::default().values();
+    let mut simulation = ansatz::Simulation::new(&named_axis::PROGRAM, &values).expect("the model can be built");
+    let mut notes = Notes::default();
+    simulation.run(&mut notes, None).expect("the run reaches its end");
+    let (_, last) = notes.rows.last().expect("a row for every step");
+    assert_eq!(last[0], 0.0);
+    assert!(last[1] > 0.1, "the load moves the body");
 }
 
 /// An elasticity energy with random elements of moderate strain.

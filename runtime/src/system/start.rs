@@ -6,6 +6,9 @@ use crate::error::{Cause, Error, SolveError};
 use crate::generated::{Domain, Program, Start};
 use crate::mesh::Mesh;
 
+/// Nodes nearer to the axis than this part of the largest radius are on it; the rest is rounding.
+const AXIS: f64 = 1e-12;
+
 /// A field unknown whose value is prescribed.
 #[derive(Clone, Debug)]
 pub struct HeldUnknown {
@@ -30,13 +33,20 @@ pub fn held_unknowns(program: &Program, mesh: &Mesh, unknowns: &Unknowns) -> Res
     if program.axisymmetric {
         let vectors = (0..program.fields.len()).filter(|&f| program.fields[f].components == 2);
         for field in vectors {
-            hold_nodes(field, 0, None, domain_nodes(mesh, Domain::Edges(&["axis"]))?);
+            hold_nodes(field, 0, None, axis_nodes(mesh));
         }
     }
     for (k, hold) in program.holds.iter().enumerate() {
         hold_nodes(hold.field, hold.component, Some(k), domain_nodes(mesh, hold.domain)?);
     }
     Ok(by_unknown.into_iter().flatten().collect())
+}
+
+/// Nodes on the axis of symmetry, whatever path leads along it.
+fn axis_nodes(mesh: &Mesh) -> Vec<u32> {
+    let widest = mesh.nodes.iter().fold(0.0, |widest: f64, x| widest.max(x[0]));
+    let on_axis = |node: &u32| mesh.nodes[*node as usize][0].abs() <= AXIS * widest;
+    (0..mesh.nodes.len() as u32).filter(on_axis).collect()
 }
 
 /// Equation of each unknown (or [`NONE`]) and unknown of each equation.

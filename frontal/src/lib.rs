@@ -30,6 +30,6 @@ pub use error::Error;
 pub use factors::Factors;
 pub use pattern::{Kind, Pattern};
 pub use pivot::Pivots;
-pub use refinement::{Accuracy, System};
+pub use refinement::{BACKWARD_ERROR, REFINEMENTS, SolveReport, System};
 pub use scaling::Scaling;
 pub use solver::Solver;

@@ -2,20 +2,20 @@
 
 use crate::pattern::Pattern;
 
-/// Backward error above which a solution is corrected.
+/// Backward error above which a solution is refined.
 pub const BACKWARD_ERROR: f64 = 1e-13;
-/// Corrections at most.
-pub const CORRECTIONS: usize = 6;
+/// Refinement steps at most.
+pub const REFINEMENTS: usize = 4;
 
 /// How well solutions satisfy a system, the worst over the right-hand sides, in maximum norms.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Accuracy {
+pub struct SolveReport {
     /// Normwise backward error `|b - A x| / (|A| |x| + |b|)`.
     pub backward_error: f64,
     /// Residual relative to the right-hand side, `|b - A x| / |b|`.
     pub relative_residual: f64,
-    /// Corrections made.
-    pub corrections: usize,
+    /// Refinement steps taken.
+    pub refinements: usize,
 }
 
 /// A system of equations whose solutions are checked.
@@ -31,53 +31,56 @@ pub struct System<'a> {
 
 impl System<'_> {
     /// Writes `b - A x` for every column and says how large it is.
-    pub fn residual(&self, x: &[f64], b: &[f64], residual: &mut [f64]) -> Accuracy {
+    pub fn residual(&self, x: &[f64], b: &[f64], residual: &mut [f64]) -> SolveReport {
         let size = self.pattern.size();
-        let mut accuracy = Accuracy::default();
+        let mut report = SolveReport::default();
         residual.copy_from_slice(b);
         let columns = residual.chunks_exact_mut(size).zip(x.chunks_exact(size)).zip(b.chunks_exact(size));
         for ((residual, x), b) in columns {
             self.pattern.subtract_product(self.values, x, residual);
             let (error, rhs) = (max_norm(residual), max_norm(b));
             if error.is_nan() {
-                return Accuracy { backward_error: f64::NAN, relative_residual: f64::NAN, corrections: 0 };
+                return SolveReport { backward_error: f64::NAN, relative_residual: f64::NAN, refinements: 0 };
             }
             if error > 0.0 {
                 let backward = error / (self.norm * max_norm(x) + rhs);
-                accuracy.backward_error = accuracy.backward_error.max(backward);
-                accuracy.relative_residual = accuracy.relative_residual.max(error / rhs);
+                report.backward_error = report.backward_error.max(backward);
+                report.relative_residual = report.relative_residual.max(error / rhs);
             }
         }
-        accuracy
+        report
     }
 
     /// Solves `A x = b` by an approximate `solve`, which works in place, and corrections until the backward error is a
-    /// matter of rounding or shrinks no more.
-    pub fn refine(
+    /// matter of rounding or shrinks no more. `residual` is left behind.
+    ///
+    /// # Errors
+    /// Those of `solve`.
+    pub fn refine<E>(
         &self,
         b: &[f64],
         x: &mut [f64],
         residual: &mut [f64],
-        mut solve: impl FnMut(&mut [f64]),
-    ) -> Accuracy {
+        mut solve: impl FnMut(&mut [f64]) -> Result<(), E>,
+    ) -> Result<SolveReport, E> {
         x.copy_from_slice(b);
-        solve(x);
-        let mut accuracy = self.residual(x, b, residual);
-        while accuracy.backward_error > BACKWARD_ERROR && accuracy.corrections < CORRECTIONS {
-            solve(residual);
+        solve(x)?;
+        let mut report = self.residual(x, b, residual);
+        while report.backward_error > BACKWARD_ERROR && report.refinements < REFINEMENTS {
+            solve(residual)?;
             x.iter_mut().zip(&*residual).for_each(|(x, correction)| *x += correction);
             let after = self.residual(x, b, residual);
-            let converges = after.backward_error <= 0.5 * accuracy.backward_error;
-            accuracy = Accuracy { corrections: accuracy.corrections + 1, ..after };
+            let converges = after.backward_error <= 0.5 * report.backward_error;
+            report = SolveReport { refinements: report.refinements + 1, ..after };
             if !converges {
                 break;
             }
         }
-        accuracy
+        Ok(report)
     }
 }
 
 /// Largest magnitude, or what is not a number.
-pub(crate) fn max_norm(x: &[f64]) -> f64 {
+fn max_norm(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |largest, value| if value.abs() <= largest { largest } else { value.abs() })
 }

@@ -42,18 +42,17 @@ impl Scaling {
         Ok(())
     }
 
-    /// Writes the scaled entries; the largest sum of magnitudes in a row.
-    pub fn apply(&self, pattern: Pattern<'_>, values: &[f64], scaled: &mut [f64]) -> f64 {
+    /// Scales entries in place; the largest sum of magnitudes in a row of the whole matrix.
+    pub fn apply(&self, pattern: Pattern<'_>, values: &mut [f64]) -> f64 {
         let mut sums = vec![0.0; pattern.size()];
         for (column, column_factor) in self.columns.iter().enumerate() {
             let range = pattern.column(column);
-            let entries = pattern.rows[range.clone()].iter().zip(&values[range.clone()]);
             let mut mirrored = 0.0;
-            for ((&row, value), scaled) in entries.zip(&mut scaled[range]) {
+            for (&row, value) in pattern.rows[range.clone()].iter().zip(&mut values[range]) {
                 let row = row as usize;
-                *scaled = value * (self.rows[row] * column_factor);
-                sums[row] += scaled.abs();
-                mirrored += if row == column { 0.0 } else { scaled.abs() };
+                *value *= self.rows[row] * column_factor;
+                sums[row] += value.abs();
+                mirrored += if row == column { 0.0 } else { value.abs() };
             }
             sums[column] += if pattern.kind == Kind::Symmetric { mirrored } else { 0.0 };
         }

@@ -5,8 +5,9 @@ use crate::error::Error;
 use crate::factors::Factors;
 use crate::pattern::{Kind, Pattern};
 use crate::pivot::Pivots;
-use crate::refinement::{Accuracy, System};
+use crate::refinement::{SolveReport, System};
 use crate::scaling::Scaling;
+use std::convert::Infallible;
 
 /// Direct solver for matrices that share one pattern.
 pub struct Solver {
@@ -50,12 +51,13 @@ impl Solver {
     pub fn factor(&mut self, entries: &[f64]) -> Result<Pivots, Error> {
         let pattern = Pattern { kind: self.kind, starts: &self.starts, rows: &self.rows };
         self.scaling.fit(pattern, entries)?;
-        self.norm = self.scaling.apply(pattern, entries, &mut self.values);
+        self.values.copy_from_slice(entries);
+        self.norm = self.scaling.apply(pattern, &mut self.values);
         self.factors.factor(&self.values)
     }
 
     /// Solves in place for one or several right-hand sides, with refinement.
-    pub fn solve(&mut self, rhs: &mut [f64]) -> Accuracy {
+    pub fn solve(&mut self, rhs: &mut [f64]) -> SolveReport {
         let pattern = Pattern { kind: self.kind, starts: &self.starts, rows: &self.rows };
         let system = System { pattern, values: &self.values, norm: self.norm };
         let [b, x, residual] = &mut self.work;
@@ -68,12 +70,15 @@ impl Solver {
                 *b = value * factor;
             }
         }
-        let accuracy = system.refine(b, x, residual, |x| self.factors.solve(x));
+        let Ok(report) = system.refine::<Infallible>(b, x, residual, |x| {
+            self.factors.solve(x);
+            Ok(())
+        });
         for (x, rhs) in x.chunks_exact(size).zip(rhs.chunks_exact_mut(size)) {
             for ((x, value), factor) in x.iter().zip(rhs).zip(&self.scaling.columns) {
                 *value = x * factor;
             }
         }
-        accuracy
+        report
     }
 }

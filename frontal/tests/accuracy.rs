@@ -2,7 +2,7 @@
 
 mod common;
 
-use ansatz_frontal::{Accuracy, Kind, Pattern, Solver};
+use ansatz_frontal::{Kind, Pattern, SolveReport, Solver};
 use common::{Matrix, Problem, matrix};
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
@@ -23,7 +23,7 @@ fn noise(length: usize) -> Vec<f64> {
     (0..length).map(|_| next()).collect()
 }
 
-fn solve(matrix: &Matrix, kind: Kind, rhs: &[f64]) -> (Vec<f64>, Accuracy) {
+fn solve(matrix: &Matrix, kind: Kind, rhs: &[f64]) -> (Vec<f64>, SolveReport) {
     let mut solver = Solver::new(pattern(matrix, kind), &matrix.weak()).unwrap();
     solver.factor(&matrix.values).unwrap();
     let mut x = rhs.to_vec();

@@ -6,7 +6,7 @@
 
 mod error;
 mod matrix;
-mod scaling;
+mod pivoting;
 mod storage;
 mod sweep;
 mod symmetric;
@@ -15,17 +15,15 @@ mod tests;
 mod unsymmetric;
 
 use super::sparse::{MatrixKind, SparsePattern};
+pub use ansatz_frontal::SolveReport;
+pub(super) use ansatz_frontal::{BACKWARD_ERROR, REFINEMENTS};
 pub use error::LinearError;
 use matrix::ScaledMatrix;
 use symmetric::{Analysis, Pivots, SymmetricFactor};
-use unsymmetric::UnsymmetricFactor;
+use unsymmetric::{ACCEPTABLE, UnsymmetricFactor};
 
 /// Pivots of the scaled matrix below this are rounding errors: the matrix is singular.
 const SMALLEST_PIVOT: f64 = 64.0 * f64::EPSILON;
-/// Backward error above which a solution is refined.
-pub(super) const BACKWARD_ERROR: f64 = 1e-13;
-/// Refinement steps at most.
-pub(super) const REFINEMENTS: usize = 2;
 
 /// What a symmetric matrix is expected to be; a wrong guess costs time and nothing else.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,8 +42,10 @@ pub enum Method {
     Llt,
     /// Bunch-Kaufman: the matrix is symmetric.
     Lblt,
-    /// LU with partial pivoting.
+    /// LU with pivots from inside the fronts.
     Lu,
+    /// LU with pivots from whole columns: slow, and the last resort.
+    PivotingLu,
 }
 
 /// Outcome of a factorisation.
@@ -67,17 +67,6 @@ impl FactorReport {
             _ => Definiteness::Indefinite,
         }
     }
-}
-
-/// Outcome of a solve, the worst over the right-hand sides, in maximum norms of the scaled system.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SolveReport {
-    /// Normwise backward error `|b - A x| / (|A| |x| + |b|)`.
-    pub backward_error: f64,
-    /// Residual relative to the right-hand side, `|b - A x| / |b|`.
-    pub relative_residual: f64,
-    /// Refinement steps taken.
-    pub refinements: usize,
 }
 
 /// Direct solver for matrices that share one pattern.
@@ -147,21 +136,20 @@ impl LinearSolver {
 
     /// Solves in place for one or several right-hand sides, [`Self::size`] numbers each.
     ///
-    /// The residual of every solution is computed with the matrix itself; up to two steps of
-    /// iterative refinement follow where the backward error is more than rounding.
+    /// The residual of every solution is computed with the matrix itself; steps of iterative refinement follow where the
+    /// backward error is more than rounding. LU that stays inaccurate is replaced by LU with unrestricted pivoting.
     ///
     /// # Errors
     /// [`LinearError::NotFactored`], right-hand sides or solutions that are not finite.
     pub fn solve(&mut self, rhs: &mut [f64]) -> Result<SolveReport, LinearError> {
         self.load(rhs)?;
-        self.apply_factor(Target::Solution)?;
-        let mut report = self.check();
-        while report.backward_error > BACKWARD_ERROR && report.refinements < REFINEMENTS {
-            let before = report;
-            report = self.refine(before)?;
-            if report.backward_error > 0.5 * before.backward_error {
-                break;
-            }
+        let mut report = self.refine()?;
+        let accurate = report.backward_error <= ACCEPTABLE;
+        if let (false, Some(Method::Lu), Some(factor)) = (accurate, self.factored, &mut self.unsymmetric) {
+            self.factored = None;
+            factor.factor_pivoting().map_err(|error| self.matrix.in_original_numbers(error))?;
+            self.factored = Some(Method::PivotingLu);
+            report = self.refine()?;
         }
         self.unload(rhs)?;
         Ok(report)
@@ -172,19 +160,23 @@ impl LinearSolver {
     /// # Errors
     /// As [`Self::solve`].
     pub(super) fn solve_unchecked(&mut self, rhs: &mut [f64]) -> Result<(), LinearError> {
+        let perturbed = self.unsymmetric.as_ref().is_some_and(UnsymmetricFactor::is_perturbed);
+        if perturbed && self.factored == Some(Method::Lu) {
+            return self.solve(rhs).map(drop);
+        }
         self.load(rhs)?;
-        self.apply_factor(Target::Solution)?;
+        self.solution.copy_from_slice(&self.rhs);
+        apply(self.factored, &mut self.symmetric, &mut self.unsymmetric, &mut self.solution)?;
         self.unload(rhs)
     }
 
-    /// Takes over right-hand sides, with which a solution starts.
+    /// Takes over right-hand sides.
     fn load(&mut self, rhs: &[f64]) -> Result<(), LinearError> {
         self.resize(rhs.len());
         let size = self.size();
         for (original, scaled) in rhs.chunks_exact(size).zip(self.rhs.chunks_exact_mut(size)) {
             self.matrix.load_rhs(original, scaled)?;
         }
-        self.solution.copy_from_slice(&self.rhs);
         Ok(())
     }
 
@@ -195,26 +187,10 @@ impl LinearSolver {
         columns.try_for_each(|(scaled, original)| self.matrix.unload_solution(scaled, original))
     }
 
-    /// Adds the correction that the residual asks for.
-    fn refine(&mut self, before: SolveReport) -> Result<SolveReport, LinearError> {
-        self.apply_factor(Target::Residual)?;
-        self.solution.iter_mut().zip(&self.residual).for_each(|(x, correction)| *x += correction);
-        Ok(SolveReport { refinements: before.refinements + 1, ..self.check() })
-    }
-
-    fn apply_factor(&mut self, target: Target) -> Result<(), LinearError> {
-        let x = match target {
-            Target::Solution => &mut self.solution,
-            Target::Residual => &mut self.residual,
-        };
-        match (self.factored, &mut self.symmetric, &mut self.unsymmetric) {
-            (Some(Method::Llt | Method::Lblt), Some(factor), _) => {
-                factor.solve(x);
-                Ok(())
-            }
-            (Some(Method::Lu), _, Some(factor)) => factor.solve(x),
-            _ => Err(LinearError::NotFactored),
-        }
+    /// Solves for the right-hand sides, with refinement.
+    fn refine(&mut self) -> Result<SolveReport, LinearError> {
+        let Self { matrix, symmetric, unsymmetric, factored, rhs, solution, residual } = self;
+        matrix.system().refine(rhs, solution, residual, |x| apply(*factored, symmetric, unsymmetric, x))
     }
 
     /// Replaces a right-hand side `b` by the residual `b - A x` of any `x`, and says how large it is.
@@ -225,7 +201,7 @@ impl LinearSolver {
         self.resize(b.len());
         self.matrix.load_rhs(b, &mut self.rhs)?;
         self.matrix.load_solution(x, &mut self.solution);
-        let report = self.check();
+        let report = self.matrix.system().residual(&self.solution, &self.rhs, &mut self.residual);
         self.matrix.unload_residual(&self.residual, b);
         Ok(report)
     }
@@ -235,32 +211,23 @@ impl LinearSolver {
             buffer.resize(length, 0.0);
         }
     }
-
-    /// Residuals of all columns, and how large they are.
-    fn check(&mut self) -> SolveReport {
-        let size = self.size();
-        let mut report = SolveReport::default();
-        self.residual.copy_from_slice(&self.rhs);
-        for (column, residual) in self.residual.chunks_exact_mut(size).enumerate() {
-            let range = column * size..(column + 1) * size;
-            let (x, b) = (&self.solution[range.clone()], &self.rhs[range]);
-            self.matrix.pattern().subtract_product(self.matrix.values(), x, residual);
-            let (error, rhs) = (max_norm(residual), max_norm(b));
-            if error > 0.0 {
-                let backward = error / (self.matrix.norm() * max_norm(x) + rhs);
-                report.backward_error = report.backward_error.max(backward);
-                report.relative_residual = report.relative_residual.max(error / rhs);
-            }
-        }
-        report
-    }
 }
 
-/// The vector that a factorisation is applied to.
-#[derive(Clone, Copy)]
-enum Target {
-    Solution,
-    Residual,
+/// Solves in place with whatever holds the factors, for the columns of `x` in elimination order.
+fn apply(
+    factored: Option<Method>,
+    symmetric: &mut Option<SymmetricFactor>,
+    unsymmetric: &mut Option<UnsymmetricFactor>,
+    x: &mut [f64],
+) -> Result<(), LinearError> {
+    match (factored, symmetric, unsymmetric) {
+        (Some(Method::Llt | Method::Lblt), Some(factor), _) => {
+            factor.solve(x);
+            Ok(())
+        }
+        (Some(Method::Lu | Method::PivotingLu), _, Some(factor)) => factor.solve(x),
+        _ => Err(LinearError::NotFactored),
+    }
 }
 
 /// Cholesky if it may and does succeed, else Bunch-Kaufman; `None` when neither can be trusted.
@@ -295,10 +262,6 @@ fn factor_unsymmetric(
         None => factor.insert(UnsymmetricFactor::new(matrix.pattern())?),
     };
     factor.factor(matrix)?;
-    Ok(FactorReport { method: Method::Lu, negative_pivots: None, smallest_pivot: None })
-}
-
-/// Largest magnitude.
-fn max_norm(x: &[f64]) -> f64 {
-    x.iter().fold(0.0, |largest, value| largest.max(value.abs()))
+    let method = if factor.is_pivoted() { Method::PivotingLu } else { Method::Lu };
+    Ok(FactorReport { method, negative_pivots: None, smallest_pivot: None })
 }

@@ -4,6 +4,8 @@
 //! to a plain slice of values; [`super::linear`] factors such a slice. The pattern holds free
 //! equations only: whoever numbers the unknowns leaves the constrained ones out.
 
+use ansatz_frontal::{Kind, Pattern};
+
 /// Whether a matrix equals its transpose, which decides what is stored and how it is factored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MatrixKind {
@@ -100,13 +102,18 @@ impl SparsePattern {
         self.rows[range.clone()].binary_search(&row).ok().map(|k| range.start + k)
     }
 
+    /// The pattern as the factorisation sees it.
+    pub(super) fn view(&self) -> Pattern<'_> {
+        let kind = match self.kind {
+            MatrixKind::Symmetric => Kind::Symmetric,
+            MatrixKind::Unsymmetric => Kind::Unsymmetric,
+        };
+        Pattern { kind, starts: &self.column_starts, rows: &self.rows }
+    }
+
     /// Calls `visit(position, row, column)` for every stored entry, column by column.
-    pub fn for_each(&self, mut visit: impl FnMut(usize, usize, usize)) {
-        for column in 0..self.size() {
-            for position in self.column(column) {
-                visit(position, self.rows[position] as usize, column);
-            }
-        }
+    pub fn for_each(&self, visit: impl FnMut(usize, usize, usize)) {
+        self.view().for_each(visit);
     }
 
     /// The pattern with its equations renumbered: new equation `k` is old equation `order[k]`.
@@ -153,22 +160,7 @@ impl SparsePattern {
 
     /// Subtracts the product: `y -= A x`, with `values` the entries of `A`.
     pub fn subtract_product(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
-        for column in 0..self.size() {
-            let range = self.column(column);
-            let entries = self.rows[range.clone()].iter().zip(&values[range]);
-            let factor = x[column];
-            match self.kind {
-                MatrixKind::Unsymmetric => entries.for_each(|(&row, a)| y[row as usize] -= a * factor),
-                MatrixKind::Symmetric => {
-                    let mut dot = 0.0;
-                    for (&row, a) in entries.skip(1) {
-                        y[row as usize] -= a * factor;
-                        dot += a * x[row as usize];
-                    }
-                    y[column] -= dot + values[self.column_starts[column] as usize] * factor;
-                }
-            }
-        }
+        self.view().subtract_product(values, x, y);
     }
 }
 

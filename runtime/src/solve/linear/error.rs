@@ -82,3 +82,16 @@ impl fmt::Display for LinearError {
 }
 
 impl std::error::Error for LinearError {}
+
+impl From<ansatz_frontal::Error> for LinearError {
+    fn from(error: ansatz_frontal::Error) -> Self {
+        use ansatz_frontal::Error;
+        match error {
+            Error::NoEquations => Self::NoEquations,
+            Error::TooLarge => Self::TooLarge,
+            Error::EmptyRow { equation } => Self::EmptyRow { equation },
+            Error::EmptyColumn { equation } => Self::EmptyColumn { equation },
+            Error::NotPositive { equation } => Self::Singular { equation },
+        }
+    }
+}

@@ -4,8 +4,8 @@
 //! terms; original equation numbers reappear only in results and errors.
 
 use super::error::LinearError;
-use super::scaling::Scaling;
-use crate::solve::sparse::{MatrixKind, SparsePattern};
+use crate::solve::sparse::SparsePattern;
+use ansatz_frontal::{Scaling, System};
 
 /// Scaled and reordered copy `P R A C P^T` of an assembled matrix `A`.
 #[derive(Debug)]
@@ -18,7 +18,6 @@ pub struct ScaledMatrix {
     order: Vec<u32>,
     scaling: Scaling,
     norm: f64,
-    row_sums: Vec<f64>,
 }
 
 impl ScaledMatrix {
@@ -33,7 +32,6 @@ impl ScaledMatrix {
             order,
             scaling: Scaling::new(size),
             norm: 0.0,
-            row_sums: vec![0.0; size],
         }
     }
 
@@ -52,9 +50,9 @@ impl ScaledMatrix {
         &self.values
     }
 
-    /// Largest sum of magnitudes in a row.
-    pub fn norm(&self) -> f64 {
-        self.norm
+    /// The scaled system, whose solutions can be checked.
+    pub fn system(&self) -> System<'_> {
+        System { pattern: self.pattern.view(), values: &self.values, norm: self.norm }
     }
 
     /// Whether every diagonal entry is positive, without which the matrix is not positive definite.
@@ -82,29 +80,11 @@ impl ScaledMatrix {
         if !finite {
             return Err(self.non_finite_entry());
         }
-        self.scaling.fit(&self.pattern, &self.values).map_err(|error| self.in_original_numbers(error))?;
-        self.scale();
+        let pattern = self.pattern.view();
+        let fitted = self.scaling.fit(pattern, &self.values).map_err(LinearError::from);
+        fitted.map_err(|error| self.in_original_numbers(error))?;
+        self.norm = self.scaling.apply(pattern, &mut self.values);
         Ok(())
-    }
-
-    /// Scales the entries, and sums their magnitudes in the rows of the whole matrix.
-    fn scale(&mut self) {
-        let symmetric = self.pattern.kind() == MatrixKind::Symmetric;
-        let (row_factors, sums) = (&self.scaling.rows, &mut self.row_sums);
-        sums.fill(0.0);
-        for (column, column_factor) in self.scaling.columns.iter().enumerate() {
-            let range = self.pattern.column(column);
-            let rows = &self.pattern.rows()[range.clone()];
-            let mut mirrored = 0.0;
-            for (&row, value) in rows.iter().zip(&mut self.values[range]) {
-                let row = row as usize;
-                *value *= row_factors[row] * column_factor;
-                sums[row] += value.abs();
-                mirrored += if row == column { 0.0 } else { value.abs() };
-            }
-            sums[column] += if symmetric { mirrored } else { 0.0 };
-        }
-        self.norm = sums.iter().copied().fold(0.0, f64::max);
     }
 
     /// Replaces a pivot position by the original equation number.

@@ -17,6 +17,11 @@ impl Noise {
     }
 }
 
+/// Largest magnitude.
+fn max_norm(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |largest, value| largest.max(value.abs()))
+}
+
 struct System {
     pattern: SparsePattern,
     values: Vec<f64>,

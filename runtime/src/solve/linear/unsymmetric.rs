@@ -1,60 +1,72 @@
-//! Factors of an unsymmetric matrix: sparse LU with partial pivoting.
+//! Factors of an unsymmetric matrix: multifrontal LU, and LU with unrestricted pivoting where that is not enough.
 //!
-//! It also serves symmetric matrices whose zero diagonal defeats pivoting inside supernodes. The
-//! pivots are not accessible, so singularity is recognised by solving for a known solution.
+//! It also serves symmetric matrices whose zero diagonal defeats pivoting inside supernodes. Pivots that are no more than
+//! rounding errors are replaced and leave a doubt, which a known solution settles: the matrix may be regular and refinement
+//! restores the accuracy, it may be singular, or it may need pivots from outside a front.
 
 use super::error::LinearError;
 use super::matrix::ScaledMatrix;
-use super::storage::{Scratch, symbolic_matrix, zeros};
+use super::pivoting::PivotingFactor;
 use crate::solve::sparse::SparsePattern;
-use faer::sparse::linalg::LuError;
-use faer::sparse::linalg::lu::{LuRef, NumericLu, SymbolicLu, factorize_symbolic_lu};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
-use faer::{Conj, MatMut, Par};
+use ansatz_frontal::{Analysis, Factors, Pivots, SolveReport, System};
 
+/// Backward error that a solution must not exceed after refinement.
+pub const ACCEPTABLE: f64 = 1e-12;
+/// Smallest pivot, relative to the entries of the scaled matrix, that leaves no doubt.
+const SMALLEST_PIVOT: f64 = 1e-10;
+/// Growth of the entries that leaves no doubt.
+const LARGEST_PIVOT: f64 = 1e8;
 /// A matrix counts as singular when a known solution comes back with a larger relative error.
 const LARGEST_ERROR: f64 = 1e-2;
 
 /// Storage for the factors of matrices with one pattern.
 pub struct UnsymmetricFactor {
-    symbolic: SymbolicLu<u32>,
-    numeric: NumericLu<u32, f64>,
-    pattern: SymbolicSparseColMat<u32>,
-    /// Position among the stored entries of every entry of the whole matrix.
+    /// Every entry of the matrix.
+    pattern: SparsePattern,
+    /// Position among the stored entries of every entry.
     sources: Vec<u32>,
     values: Vec<f64>,
-    ones: Vec<f64>,
-    probe: Vec<f64>,
-    scratch: Scratch,
+    norm: f64,
+    /// Whether the diagonal entry of an unknown was ever zero: it is eliminated late.
+    weak: Vec<bool>,
+    fronts: Option<Factors>,
+    pivoting: Option<PivotingFactor>,
+    /// Which factors hold the matrix.
+    pivoted: bool,
+    perturbed: bool,
 }
 
 impl UnsymmetricFactor {
-    /// Analyses a pattern of either kind; a symmetric one is expanded.
+    /// Takes over a pattern of either kind; a symmetric one is expanded.
     ///
     /// # Errors
-    /// [`LinearError::NoEquations`], [`LinearError::TooLarge`].
+    /// [`LinearError::NoEquations`].
     pub fn new(pattern: &SparsePattern) -> Result<Self, LinearError> {
         if pattern.size() == 0 {
             return Err(LinearError::NoEquations);
         }
-        let (expanded, sources) = pattern.expanded();
-        let pattern = symbolic_matrix(&expanded);
-        let symbolic =
-            factorize_symbolic_lu(pattern.as_ref(), Default::default()).map_err(|_| LinearError::TooLarge)?;
-        let scratch = Scratch::new(&[
-            symbolic.factorize_numeric_lu_scratch::<f64>(Par::Seq, Default::default()),
-            symbolic.solve_in_place_scratch::<f64>(1, Par::Seq),
-        ])?;
+        let (pattern, sources) = pattern.expanded();
         Ok(Self {
-            numeric: NumericLu::new(),
-            values: zeros(sources.len())?,
-            ones: vec![1.0; expanded.size()],
-            probe: vec![0.0; expanded.size()],
-            scratch,
+            values: vec![0.0; sources.len()],
+            weak: vec![false; pattern.size()],
             pattern,
             sources,
-            symbolic,
+            norm: 0.0,
+            fronts: None,
+            pivoting: None,
+            pivoted: false,
+            perturbed: false,
         })
+    }
+
+    /// Whether pivots were looked for in whole columns.
+    pub fn is_pivoted(&self) -> bool {
+        self.pivoted
+    }
+
+    /// Whether solutions are inaccurate without refinement.
+    pub fn is_perturbed(&self) -> bool {
+        self.perturbed
     }
 
     /// Factors a matrix.
@@ -62,63 +74,100 @@ impl UnsymmetricFactor {
     /// # Errors
     /// [`LinearError::Singular`] with the equation in elimination order; [`LinearError::TooLarge`].
     pub fn factor(&mut self, matrix: &ScaledMatrix) -> Result<(), LinearError> {
-        for (value, &source) in self.values.iter_mut().zip(&self.sources) {
-            *value = matrix.values()[source as usize];
+        self.load(matrix);
+        let mut fronts = match self.fronts.take() {
+            Some(fronts) => fronts,
+            None => self.analyse()?,
+        };
+        let pivots = fronts.factor(&self.values)?;
+        self.perturbed = pivots.perturbed > 0;
+        let doubtful = pivots.smallest < SMALLEST_PIVOT || pivots.largest > LARGEST_PIVOT || self.perturbed;
+        let verdict = if doubtful { self.settle(&mut fronts, pivots) } else { Verdict::Regular };
+        self.fronts = Some(fronts);
+        match verdict {
+            Verdict::Regular => Ok(()),
+            Verdict::Singular { equation } => Err(LinearError::Singular { equation }),
+            Verdict::Inaccurate => self.factor_pivoting(),
         }
-        self.symbolic
-            .factorize_numeric_lu(
-                &mut self.numeric,
-                SparseColMatRef::new(self.pattern.as_ref(), &self.values),
-                Par::Seq,
-                self.scratch.stack(),
-                Default::default(),
-            )
-            .map_err(|error| match error {
-                LuError::SymbolicSingular { index } => {
-                    LinearError::Singular { equation: self.symbolic.col_perm().arrays().0[index] as usize }
-                }
-                LuError::Generic(_) => LinearError::TooLarge,
-            })?;
-        self.check_against_known_solution(matrix)
     }
 
-    /// Solves for a solution of minus ones.
-    fn check_against_known_solution(&mut self, matrix: &ScaledMatrix) -> Result<(), LinearError> {
-        let mut probe = std::mem::take(&mut self.probe);
-        probe.fill(0.0);
-        matrix.pattern().subtract_product(matrix.values(), &self.ones, &mut probe);
-        let solved = self.solve(&mut probe);
-        let wrong = self.wrong_unknown(&probe);
-        self.probe = probe;
-        solved?;
-        wrong.map_or(Ok(()), |equation| Err(LinearError::Singular { equation }))
+    /// Takes over the values. Unknowns that lose their diagonal entry ask for another order of elimination.
+    fn load(&mut self, matrix: &ScaledMatrix) {
+        for (value, &source) in self.values.iter_mut().zip(&self.sources) {
+            *value = matrix.system().values[source as usize];
+        }
+        self.norm = matrix.system().norm;
+        self.pivoted = false;
+        for (equation, weak) in self.weak.iter_mut().enumerate() {
+            let diagonal = self.pattern.position(equation as u32, equation as u32);
+            if !*weak && diagonal.is_none_or(|position| self.values[position] == 0.0) {
+                *weak = true;
+                self.fronts = None;
+            }
+        }
     }
 
-    /// The unknown of a known solution, minus one everywhere, that tells of a vanishing pivot.
+    fn analyse(&self) -> Result<Factors, LinearError> {
+        let weak: Vec<u32> = (0..self.weak.len() as u32).filter(|&k| self.weak[k as usize]).collect();
+        Ok(Factors::new(Analysis::new(self.pattern.view(), &weak)?)?)
+    }
+
+    /// Solves for a known solution of ones.
+    fn settle(&self, fronts: &mut Factors, pivots: Pivots) -> Verdict {
+        let size = self.pattern.size();
+        let [mut b, mut x, mut residual] = [(); 3].map(|()| vec![0.0; size]);
+        self.pattern.subtract_product(&self.values, &vec![-1.0; size], &mut b);
+        let report: Result<SolveReport, LinearError> = self.system().refine(&b, &mut x, &mut residual, |x| {
+            fronts.solve(x);
+            Ok(())
+        });
+        let accurate = report.is_ok_and(|report| report.backward_error <= ACCEPTABLE);
+        let error = x.iter().fold(0.0, |largest: f64, x| largest.max((x - 1.0).abs()));
+        match (accurate, error <= LARGEST_ERROR) {
+            (true, true) => Verdict::Regular,
+            (true, false) => Verdict::Singular { equation: fronts.analysis().order()[pivots.turn] as usize },
+            (false, _) => Verdict::Inaccurate,
+        }
+    }
+
+    fn system(&self) -> System<'_> {
+        System { pattern: self.pattern.view(), values: &self.values, norm: self.norm }
+    }
+
+    /// Factors the same matrix again, with pivots from whole columns.
     ///
-    /// Back substitution spoils everything eliminated before a pivot of exactly zero, so the last
-    /// spoilt unknown is its own; a small pivot brings out the null vector instead.
-    fn wrong_unknown(&self, probe: &[f64]) -> Option<usize> {
-        let elimination = self.symbolic.col_perm().arrays().0;
-        let spoilt = elimination.iter().rev().map(|&k| k as usize).find(|&k| !probe[k].is_finite());
-        spoilt.or_else(|| {
-            let error = |k: &usize| (probe[*k] + 1.0).abs();
-            let worst = (0..probe.len()).max_by(|a, b| error(a).total_cmp(&error(b)))?;
-            (error(&worst) > LARGEST_ERROR).then_some(worst)
-        })
+    /// # Errors
+    /// As [`Self::factor`].
+    pub fn factor_pivoting(&mut self) -> Result<(), LinearError> {
+        let mut factor = match self.pivoting.take() {
+            Some(factor) => factor,
+            None => PivotingFactor::new(&self.pattern)?,
+        };
+        let result = factor.factor(self.system());
+        self.pivoting = Some(factor);
+        (self.pivoted, self.perturbed) = (true, false);
+        result
     }
 
     /// Solves in place for the columns of `x`, in elimination order, `size` numbers each.
     ///
     /// # Errors
-    /// [`LinearError::TooLarge`] when there is no memory for so many columns.
+    /// [`LinearError::TooLarge`] when there is no memory for so many columns; [`LinearError::NotFactored`].
     pub fn solve(&mut self, x: &mut [f64]) -> Result<(), LinearError> {
-        let size = self.symbolic.nrows();
-        let columns = x.len() / size;
-        let stack = self.scratch.stack_for(self.symbolic.solve_in_place_scratch::<f64>(columns, Par::Seq))?;
-        let unknowns = MatMut::from_column_major_slice_mut(x, size, columns);
-        let factor = LuRef::new_unchecked(&self.symbolic, &self.numeric);
-        factor.solve_in_place_with_conj(Conj::No, unknowns, Par::Seq, stack);
-        Ok(())
+        match (self.pivoted, &mut self.pivoting, &mut self.fronts) {
+            (true, Some(factor), _) => factor.solve(x),
+            (false, _, Some(fronts)) => {
+                fronts.solve(x);
+                Ok(())
+            }
+            _ => Err(LinearError::NotFactored),
+        }
     }
+}
+
+/// What a known solution says about a factorisation.
+enum Verdict {
+    Regular,
+    Singular { equation: usize },
+    Inaccurate,
 }

@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | P1 | [`assembly`] | residual and tangent of a neo-Hookean solid, plane and axisymmetric |
 //! | P2 | `solves::cook` | Cook's membrane |
+//! | P3 | [`flow`] | flow past a cylinder, lid-driven cavity |
 //! | P4 | `solves::sphere` | a rigid sphere pressed into a cylinder |
 //!
 //! Meshes, loads and laws are those of the peers whose figures ours are compared with, node by node.
@@ -11,6 +12,7 @@
 pub mod assembly;
 pub mod clock;
 pub mod compiler;
+pub mod flow;
 pub mod report;
 pub mod solves;
 
@@ -20,7 +22,15 @@ ansatz::include_model!("../models/assembly_plane.ansatz");
 ansatz::include_model!("../models/assembly_axi.ansatz");
 ansatz::include_model!("../models/cook.ansatz");
 ansatz::include_model!("../models/sphere.ansatz");
+ansatz::include_model!("../models/dfg.ansatz");
+ansatz::include_model!("../models/cavity.ansatz");
 
 /// The models of all problems.
-pub static PROGRAMS: [&Program; 4] =
-    [&assembly_plane::PROGRAM, &assembly_axi::PROGRAM, &cook::PROGRAM, &sphere::PROGRAM];
+pub static PROGRAMS: [&Program; 6] = [
+    &assembly_plane::PROGRAM,
+    &assembly_axi::PROGRAM,
+    &cook::PROGRAM,
+    &sphere::PROGRAM,
+    &dfg::PROGRAM,
+    &cavity::PROGRAM,
+];

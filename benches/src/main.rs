@@ -8,9 +8,14 @@ use std::process::ExitCode;
 
 const USAGE: &str = "usage: ansatz-benches p1 N ps|axi    assembly on N x N x 2 triangles
                       p2 N           Cook's membrane
+                      p3 dfg L [DIR] flow past a cylinder on DIR/dfg_L.msh
+                      p3 cavity N    lid-driven cavity
                       p4 N           a sphere pressed into a cylinder
                       compile FILE   the stages of the compiler
                       dry TIME [COARSE]   the dry model to a time [s]";
+
+/// Where the peers' meshes lie, seen from the workspace.
+const MESHES: &str = "../shared/peers/mesh";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -32,6 +37,9 @@ fn run(words: &[&str]) -> Result<Value, String> {
         ["p1", n, "ps"] => report::assembly(number(n)?, Kind::PlaneStrain),
         ["p1", n, "axi"] => report::assembly(number(n)?, Kind::Axisymmetric),
         ["p2", n] => report::cook(number(n)?),
+        ["p3", "dfg", level] => report::past_cylinder(number(level)?, Path::new(MESHES)),
+        ["p3", "dfg", level, folder] => report::past_cylinder(number(level)?, Path::new(folder)),
+        ["p3", "cavity", n] => report::cavity(number(n)?),
         ["p4", n] => report::sphere(number(n)?),
         ["compile", file] => report::compiler(Path::new(file)),
         ["dry", until] => report::dry(number(until)?, 1.0),

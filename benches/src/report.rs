@@ -3,6 +3,7 @@
 use crate::assembly::{Assembly, Kind};
 use crate::clock::{Clock, median};
 use crate::compiler::stages;
+use crate::flow::Flow;
 use crate::solves::Solve;
 use ansatz::observer::Observer;
 use serde_json::{Value, json};
@@ -37,6 +38,43 @@ pub fn assembly(n: usize, kind: Kind) -> Result<Value, String> {
 /// If Newton's method does not converge.
 pub fn cook(n: usize) -> Result<Value, String> {
     solve("P2", &["tip_ux", "tip_uy"], || Solve::cook(n))
+}
+
+/// P3, flow past a cylinder on the mesh `dfg_LEVEL.msh` in a folder: the whole solve.
+///
+/// # Errors
+/// If there is no such file, or if Newton's method does not converge.
+pub fn past_cylinder(level: usize, folder: &Path) -> Result<Value, String> {
+    let file = folder.join(format!("dfg_{level}.msh"));
+    let mesh =
+        std::fs::read_to_string(&file).map_err(|e| format!("cannot read `{}`: {e}", file.display()))?;
+    flow("dfg", || Flow::past_cylinder(&mesh))
+}
+
+/// P3, lid-driven cavity at Reynolds number 1000 on n x n x 2 triangles: the whole solve.
+///
+/// # Errors
+/// If Newton's method does not converge.
+pub fn cavity(n: usize) -> Result<Value, String> {
+    flow("cavity", || Flow::cavity(n))
+}
+
+fn flow(case: &str, setup: impl Fn() -> Result<Flow, ansatz::Error>) -> Result<Value, String> {
+    let clock = Clock::start();
+    let mut prepared = setup().map_err(|e| e.to_string())?;
+    let setup = clock.seconds();
+    let clock = Clock::start();
+    let solved = prepared.run().map_err(|e| e.to_string())?;
+    let run = clock.seconds();
+    let mut line = json!({
+        "problem": "P3", "case": case, "peer": "ansatz", "n_elements": prepared.cells(), "n_dofs": prepared.unknowns(),
+        "total_its": solved.iterations, "setup_s": setup, "run_s": run, "total_s": setup + run,
+        "per_it_ms": run / solved.iterations as f64 * 1e3,
+    });
+    for (name, value) in solved.results {
+        line[name] = json!(value);
+    }
+    Ok(line)
 }
 
 /// P4 on n x n x 2 triangles: the whole solve.

@@ -10,8 +10,9 @@ pub struct Module {
 }
 
 /// Every module, by name.
-pub const MODULES: [Module; 2] = [
+pub const MODULES: [Module; 3] = [
     Module { name: "check", text: include_str!("../std/check.ansatz") },
+    Module { name: "fluid", text: include_str!("../std/fluid.ansatz") },
     Module { name: "solid", text: include_str!("../std/solid.ansatz") },
 ];
 

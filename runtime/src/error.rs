@@ -55,6 +55,8 @@ pub enum Cause {
     Singular(String),
     /// A value became infinite or undefined, as when an element turns inside out.
     NotFinite,
+    /// Nothing fixes the level of this field, and the sources in its equation do not cancel, as where more flows into a closed box than out.
+    Unbalanced(&'static str),
     /// The small system of states has no solution; the text names the equation.
     States(String),
 }
@@ -68,6 +70,11 @@ impl fmt::Display for Cause {
             Self::NotFinite => {
                 write!(f, "a value is not finite: an element has turned inside out or a law left its domain")
             }
+            Self::Unbalanced(field) => write!(
+                f,
+                "nothing fixes the level of `{field}`, and its equation does not balance: what is held and what is applied leave something over; \
+                 let the held values cancel, or hold nothing on a part of the boundary"
+            ),
             Self::States(equation) => write!(f, "the states could not be solved for: {equation}"),
         }
     }

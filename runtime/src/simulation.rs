@@ -114,8 +114,10 @@ impl ImplicitSystem for Discretised {
         let problem = StageProblem { time: stage.time, alpha: stage.alpha, base: stage.base };
         let report = if self.system.equation_count() == 0 {
             self.system.solve_scalars(&problem, y)?
+        } else if self.system.settings.time.is_none() {
+            self.system.solve_stationary(&problem, y)?
         } else {
-            self.system.solve_stage(&problem, y)?
+            self.system.solve_instant(&problem, y)?
         };
         let stable = *self.definite.get_or_insert(report.negative_pivots);
         if report.negative_pivots > stable {

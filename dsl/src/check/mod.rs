@@ -32,6 +32,7 @@ mod types;
 pub(crate) mod unit;
 mod unknown;
 mod walk;
+mod work;
 
 use crate::diagnostic::{Diagnostic, Sink};
 use crate::model::{
@@ -62,6 +63,7 @@ pub fn check(program: &Program, sources: &SourceMap, sink: &mut Sink) -> Option<
     place::check(&model, sink);
     if !sink.has_errors() {
         form::check(&model, sink);
+        work::check(&model, sink);
         dae::check(&model, sources, sink);
     }
     (!sink.has_errors()).then_some(model)

@@ -118,7 +118,9 @@ impl Checker<'_> {
                 .label(quantity.span, format!("this is {}", self.words(&quantity.ty))),
             ));
         }
-        if d * e == per_measure(energy(), domain.as_ref()) {
+        // Virtual work, or virtual power where the unknown is a velocity; `work` compares them with the other statements.
+        let power = energy() / Dimension::TIME;
+        if [energy(), power].iter().any(|&total| d * e == per_measure(total, domain.as_ref())) {
             return Ok(StatementKind::Load(quantity, force_value, domain));
         }
         Err(self.load_error(&quantity, d, &force_value, e, domain.as_ref()))
@@ -218,7 +220,8 @@ impl Checker<'_> {
     }
 }
 
-fn energy() -> Dimension {
+/// The dimension of energies.
+pub(super) fn energy() -> Dimension {
     Dimension::named("Energy").unwrap_or(Dimension::NUMBER)
 }
 

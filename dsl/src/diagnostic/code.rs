@@ -65,7 +65,7 @@ codes! {
     DimensionMismatch = "U101", "both sides need the same dimension";
     NotANumber = "U102", "the function takes a pure number";
     DeclaredDimension = "U103", "the value has another dimension than declared";
-    LoadDimension = "U104", "the load times its quantity is not an energy";
+    LoadDimension = "U104", "the load times its quantity is neither an energy nor, as the rest of its balance, a power";
     EnergyDimension = "U105", "the integral of an energy term is not an energy";
     ExponentNotConstant = "U106", "a quantity with a unit needs a constant rational exponent";
     UnitDimension = "U107", "the value cannot be shown in this unit";

@@ -1,4 +1,4 @@
-//! Meshes of curved quadratic triangles: made from a geometry and a size field, or structured for tests.
+//! Meshes of curved quadratic triangles: made from a geometry and a size field, structured for tests, or from triangles made elsewhere.
 //!
 //! From a checked [`Geometry`] to a [`Mesh`]: `sizing` gives the wanted edge length at every point, `outline` divides
 //! the curves by it, `triangulate` fills the regions (`delaunay`, `front`, `smooth`), `assemble` adds mid-edge nodes
@@ -21,6 +21,7 @@ mod smooth;
 mod structured;
 #[cfg(test)]
 mod tests;
+mod triangles;
 mod triangulate;
 
 pub use error::MeshError;
@@ -28,6 +29,7 @@ pub use locate::Locator;
 pub use quality::{QualityStatistics, cell_quality};
 pub use sizing::{MeshSizing, Place, SizeRule};
 pub use structured::structured_rectangle;
+pub use triangles::mesh_of_triangles;
 
 use ansatz_geometry::Point;
 use std::ops::Range;

@@ -8,9 +8,11 @@ use std::path::Path;
 
 /// Triangles per edge of a cell: curved edges look curved.
 const PARTS: usize = 3;
+/// Largest size; a wide body makes a picture less tall, at least as tall as its bar.
 const PICTURE: [usize; 2] = [640, 800];
 const MARGIN: f64 = 40.0;
 const BAR: f64 = 110.0;
+const BAR_HEIGHT: f64 = 300.0;
 const INK: Rgb = [30; 3];
 
 /// What to draw.
@@ -29,12 +31,12 @@ pub struct Snapshot<'a> {
 
 /// Draws and writes a PNG.
 pub fn write(path: &Path, snapshot: &Snapshot<'_>) -> Result<(), Error> {
-    let mut canvas = Canvas::new(PICTURE[0], PICTURE[1]);
     let position = |n: u32| {
         let (p, u) = (snapshot.grid.points[n as usize], snapshot.displacement[n as usize]);
         [p[0] + u[0], p[1] + u[1]]
     };
     let view = View::new(snapshot.grid);
+    let mut canvas = Canvas::new(PICTURE[0], view.height());
     let range = Range::of(snapshot.values);
     for cell in &snapshot.grid.cells {
         let corners = cell.map(|n| view.pixel(position(n)));
@@ -67,6 +69,12 @@ impl View {
         let wide = (PICTURE[0] as f64 - 2.0 * MARGIN - BAR) / (high[0] - low[0]);
         let tall = (PICTURE[1] as f64 - 2.0 * MARGIN) / (high[1] - low[1]);
         Self { low, high, scale: wide.min(tall) }
+    }
+
+    /// Height of the picture.
+    fn height(&self) -> usize {
+        let body = (self.high[1] - self.low[1]) * self.scale;
+        ((body + 2.0 * MARGIN).max(BAR_HEIGHT + 3.0 * MARGIN).ceil() as usize).min(PICTURE[1])
     }
 
     fn pixel(&self, p: [f64; 2]) -> [f64; 2] {
@@ -166,7 +174,7 @@ fn draw_edge(canvas: &mut Canvas, nodes: [[f64; 2]; 3]) {
 }
 
 fn draw_bar(canvas: &mut Canvas, range: &Range) {
-    let (x, top, height) = (PICTURE[0] as f64 - BAR + 10.0, MARGIN + 40.0, 300.0);
+    let (x, top, height) = (PICTURE[0] as f64 - BAR + 10.0, MARGIN + 40.0, BAR_HEIGHT);
     let rows = 150;
     for k in 0..rows {
         let s = 1.0 - k as f64 / (rows - 1) as f64;

@@ -98,15 +98,24 @@ impl System {
                 }
             }
         }
+        if block.is_none() {
+            self.take_ramp_away(&mut residual);
+        }
         residual
     }
 
     /// Size of the element forces that balance each other: the scale against which a residual is small.
     pub(super) fn force_scale(&mut self, y: &[f64], rates: &[f64], alpha: f64) -> f64 {
+        let magnitude = self.magnitude(y, rates, alpha);
+        norm(&self.restrict(&magnitude))
+    }
+
+    /// Sum of the magnitudes of what each element adds to the residual of each unknown.
+    pub(super) fn magnitude(&mut self, y: &[f64], rates: &[f64], alpha: f64) -> Vec<f64> {
         let mut magnitude = vec![0.0; self.unknowns.length];
         let at = At { y, rates, g: &self.g, alpha };
         self.terms.iter_mut().for_each(|t| t.add_magnitude(at, &mut magnitude));
-        norm(&self.restrict(&magnitude))
+        magnitude
     }
 
     /// Residual that rounding alone may leave: the diagonal of the last tangent times the rounding of the unknowns, and of the positions that
@@ -158,6 +167,7 @@ impl System {
                 functional.add_curvature(at, *c, &mut self.values, &mut unused);
             }
         }
+        self.take_ramp_away(&mut residual);
         let (b, c) = self.outer_products(y, rates, alpha);
         Balance { residual: self.restrict(&residual), b, c }
     }

@@ -11,10 +11,12 @@ mod elements;
 mod frames;
 mod functionals;
 mod globals;
+mod levels;
 mod newton;
 mod observables;
 mod point;
 mod probe;
+mod ramp;
 mod scalars;
 mod start;
 mod states;
@@ -37,7 +39,9 @@ use crate::solve::sparse::{MatrixKind, SparsePattern};
 use crate::time::control::with_step_bounds;
 use contact::PairOn;
 use functionals::FunctionalOn;
+use levels::Level;
 use observables::ObservableOn;
+use ramp::Ramp;
 use start::HeldUnknown;
 use states::StateSolver;
 use terms::Term;
@@ -78,6 +82,10 @@ pub struct System {
     cell_size: f64,
     /// The last factorisation met negative pivots: the next one starts with the indefinite method.
     indefinite: bool,
+    /// Scalar fields whose level nothing fixes; `None` before the first start.
+    levels: Option<Vec<Level>>,
+    /// What a stationary solution has reached on its way, while it is on one.
+    ramp: Option<Ramp>,
 }
 
 impl System {
@@ -86,7 +94,7 @@ impl System {
         let unknowns = Unknowns::new(program, &mesh)?;
         let g = globals::constants(program, parameters, &mesh)?;
         let held = start::held_unknowns(program, &mesh, &unknowns)?;
-        let (equations, free) = start::number_equations(&unknowns, &held);
+        let (equations, free) = start::number_equations(&unknowns, held.iter().map(|h| h.unknown));
         let terms: Vec<Term> =
             program.integrals.iter().map(|i| Term::new(i, &mesh, &unknowns)).collect::<Result<_, _>>()?;
         let functionals: Vec<FunctionalOn> = program
@@ -131,6 +139,8 @@ impl System {
             factored: None,
             cell_size,
             indefinite: false,
+            levels: None,
+            ramp: None,
         };
         let y = vec![0.0; system.unknowns.length];
         system.rebuild_pattern(&y)?;

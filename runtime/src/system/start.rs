@@ -49,10 +49,13 @@ fn axis_nodes(mesh: &Mesh) -> Vec<u32> {
     (0..mesh.nodes.len() as u32).filter(on_axis).collect()
 }
 
-/// Equation of each unknown (or [`NONE`]) and unknown of each equation.
-pub fn number_equations(unknowns: &Unknowns, held: &[HeldUnknown]) -> (Vec<u32>, Vec<u32>) {
+/// Equation of each unknown (or [`NONE`], for those in `without`) and unknown of each equation.
+pub fn number_equations(
+    unknowns: &Unknowns,
+    without: impl IntoIterator<Item = usize>,
+) -> (Vec<u32>, Vec<u32>) {
     let mut equations = vec![0; unknowns.states];
-    held.iter().for_each(|h| equations[h.unknown] = NONE);
+    without.into_iter().for_each(|unknown| equations[unknown] = NONE);
     let mut free = Vec::new();
     for (unknown, equation) in equations.iter_mut().enumerate() {
         if *equation != NONE {
@@ -84,10 +87,12 @@ impl System {
         }
         let count = self.program.states.len();
         y[self.unknowns.states..][..count].copy_from_slice(&self.g[states..states + count]);
+        self.fix_levels(&y)?;
         Ok(y)
     }
 
-    fn start_fields(&self, y: &mut [f64]) {
+    /// Writes the fields' start into y.
+    pub(super) fn start_fields(&self, y: &mut [f64]) {
         for (field, numbers) in self.program.fields.iter().zip(&self.unknowns.fields) {
             let mut out = vec![0.0; field.components];
             for (k, &node) in numbers.nodes.iter().enumerate() {
@@ -101,7 +106,8 @@ impl System {
     pub(super) fn apply_holds(&mut self, time: f64, y: &mut [f64]) {
         self.g[self.program.layout.time] = time;
         for held in &self.held {
-            y[held.unknown] = held.hold.map_or(0.0, |k| (self.program.holds[k].value)(held.x, &self.g));
+            let wanted = held.hold.map_or(0.0, |k| (self.program.holds[k].value)(held.x, &self.g));
+            y[held.unknown] = self.ramp.as_ref().map_or(wanted, |ramp| ramp.held(held.unknown, wanted));
         }
     }
 }

@@ -91,7 +91,7 @@ pub(crate) fn eliminate(
     let (width, padded) = (front.width, front.padded());
     let mut pivots = Pivots::NONE;
     let Blocks { square, below, right } = blocks;
-    let block = Block { values: square, width, turn: front.first };
+    let mut block = Block { values: square, width, turn: front.first };
     match kind {
         Kind::Symmetric => block.cholesky(&mut pivots)?,
         Kind::Unsymmetric => {

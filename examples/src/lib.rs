@@ -6,6 +6,9 @@
 //! | `02_cook` | [`cooks_membrane`] | a law of one's own, a geometry, finer meshes |
 //! | `03_relaxation` | [`relaxation`] | states, an equation in time, coupling with a field |
 //! | `04_indentation` | [`indentation`] | contact of two bodies |
+//! | `05_pipe` | [`pipe_flow`] | weak forms of a velocity and a pressure |
+//! | `06_cylinder_flow` | [`cylinder_flow`] | profiles that are held, forces on a body |
+//! | `07_cavity` | [`lid_driven_cavity`] | a pressure without a level |
 
 use ansatz::generated::Program;
 
@@ -13,7 +16,17 @@ ansatz::include_model!("../01_block/model.ansatz");
 ansatz::include_model!("../02_cook/model.ansatz");
 ansatz::include_model!("../03_relaxation/model.ansatz");
 ansatz::include_model!("../04_indentation/model.ansatz");
+ansatz::include_model!("../05_pipe/model.ansatz");
+ansatz::include_model!("../06_cylinder_flow/model.ansatz");
+ansatz::include_model!("../07_cavity/model.ansatz");
 
 /// All examples, in order.
-pub static PROGRAMS: [&Program; 4] =
-    [&pressed_block::PROGRAM, &cooks_membrane::PROGRAM, &relaxation::PROGRAM, &indentation::PROGRAM];
+pub static PROGRAMS: [&Program; 7] = [
+    &pressed_block::PROGRAM,
+    &cooks_membrane::PROGRAM,
+    &relaxation::PROGRAM,
+    &indentation::PROGRAM,
+    &pipe_flow::PROGRAM,
+    &cylinder_flow::PROGRAM,
+    &lid_driven_cavity::PROGRAM,
+];

@@ -382,6 +382,16 @@ pub struct Observable {
 pub enum ObservableKind {
     /// Sum of integrals (only `value` kernels are called).
     Integral(&'static [Integral]),
+    /// Integral over the edges of paths (or segments) as seen from the cells of regions; behind its inputs the function reads both components
+    /// of the unit normal out of these.
+    Side {
+        /// Paths.
+        paths: &'static [&'static str],
+        /// Regions; each edge has one of them on one side.
+        regions: &'static [&'static str],
+        /// Integrand.
+        function: PointFunction,
+    },
     /// Smallest value over the nodes of a domain.
     Min(Domain, PointFunction),
     /// Largest value over the nodes of a domain.

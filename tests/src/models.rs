@@ -4,15 +4,23 @@ ansatz::include_model!("../models/patch_plane.ansatz");
 ansatz::include_model!("../models/patch_axi.ansatz");
 ansatz::include_model!("../models/crushed.ansatz");
 ansatz::include_model!("../models/coupled.ansatz");
+ansatz::include_model!("../models/channel.ansatz");
+ansatz::include_model!("../models/stretching.ansatz");
+ansatz::include_model!("../models/vortices.ansatz");
+ansatz::include_model!("../models/leaking_box.ansatz");
 ansatz::include_model!("../models/named_axis.ansatz");
 
 use ansatz::generated::Program;
 
 /// All of them.
-pub static PROGRAMS: [&Program; 5] = [
+pub static PROGRAMS: [&Program; 9] = [
     &patch_plane::PROGRAM,
     &patch_axi::PROGRAM,
     &crushed::PROGRAM,
     &coupled::PROGRAM,
     &named_axis::PROGRAM,
+    &channel::PROGRAM,
+    &stretching::PROGRAM,
+    &vortices::PROGRAM,
+    &leaking_box::PROGRAM,
 ];

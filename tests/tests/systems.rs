@@ -4,7 +4,7 @@ use ansatz::generated::{ObservableKind, Program};
 use ansatz::mesh::Mesh;
 use ansatz::system::{StageProblem, System};
 use ansatz_tests::differences::{assert_agree, derivative};
-use ansatz_tests::models::coupled;
+use ansatz_tests::models::{channel, coupled};
 use ansatz_tests::notes::Notes;
 use ansatz_tests::sample::Random;
 
@@ -86,6 +86,13 @@ fn a_coupled_model_runs_to_its_end() {
     // The top moves so little that the channels open nearly as if alone.
     let (_, last) = notes.rows.last().expect("rows");
     assert!((last[2] - opening(2.0)).abs() < 0.05, "{last:?}");
+}
+
+#[test]
+fn of_incompressible_flow() {
+    tangent_is_exact(&channel::PROGRAM, &[], |x| [x[1], -x[0]]);
+    tangent_is_exact(&ansatz_examples::pipe_flow::PROGRAM, &[], |x| [x[0], 10.0 * x[1]]);
+    tangent_is_exact(&ansatz_examples::lid_driven_cavity::PROGRAM, &[], |x| [x[1], -x[0]]);
 }
 
 #[test]

@@ -44,9 +44,9 @@ const PLAIN: [(&str, Builtin); 30] = [
 ];
 
 /// Functions that look at more than the values of their arguments.
-const SPECIAL: [&str; 14] = [
+const SPECIAL: [&str; 15] = [
     "polar", "dt", "diff", "frozen", "test", "mean", "integral", "area", "volume", "length", "force", "pair",
-    "loop", "run",
+    "loop", "run", "normal",
 ];
 
 /// The function of values of that name.
@@ -221,6 +221,10 @@ impl Checker<'_> {
             "area" | "volume" | "length" => {
                 self.positional(name, 1, args, span)?;
                 self.measure(name, &args[0].value, span, env)
+            }
+            "normal" => {
+                self.positional(name, 1, args, span)?;
+                self.normal(&args[0].value, span, env)
             }
             "force" => {
                 self.positional(name, 2, args, span)?;

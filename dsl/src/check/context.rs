@@ -112,7 +112,7 @@ pub(super) fn ingredient(e: &Expr) -> Option<Ingredient> {
         ExprKind::Test(_) => Ingredient::Test,
         ExprKind::State(_) => Ingredient::State,
         ExprKind::Time => Ingredient::Time,
-        ExprKind::Coordinate(_) => Ingredient::Coordinate,
+        ExprKind::Coordinate(_) | ExprKind::Normal(_) => Ingredient::Coordinate,
         ExprKind::MatchRegion(..) => Ingredient::Region,
         ExprKind::Gap(_) => Ingredient::Gap,
         ExprKind::Reduce(..) | ExprKind::Force(..) | ExprKind::AtPoint(..) => Ingredient::Functional,

@@ -307,6 +307,7 @@ impl<'m> Placer<'m, '_> {
             ExprKind::Test(id) => format!("`test({})`", model.fields[id.0].name),
             ExprKind::State(id) => format!("state `{}`", model.states[id.0].name),
             ExprKind::Coordinate(i) => format!("coordinate `{}`", model.coordinates.names[*i]),
+            ExprKind::Normal(_) => "a normal".into(),
             ExprKind::Gap(id) => format!("`{}.gap`", model.pairs[id.0].name),
             ExprKind::Time => "the time `t`".into(),
             ExprKind::MatchRegion(..) => "a choice by region".into(),
@@ -323,6 +324,9 @@ impl<'m> Placer<'m, '_> {
         match &e.kind {
             ExprKind::Field(id) | ExprKind::Test(id) => {
                 self.field_on(&self.model.fields[id.0], domain, via.unwrap_or(e.span), Some(e.span));
+            }
+            ExprKind::Normal(_) if super::domain::kind(domain) != super::domain::Kind::Edges => {
+                self.missing(via.unwrap_or(e.span), e.span, domain, "a normal exists on paths only".into());
             }
             ExprKind::Gap(id) => {
                 let here = domain

@@ -114,6 +114,17 @@ impl Checker<'_> {
         ))
     }
 
+    /// `normal(D)`: the unit normal out of regions, on the paths that bound them.
+    pub(super) fn normal(&mut self, e: &ast::Expr, span: Span, env: &Env) -> Checked<Expr> {
+        let domain = self.domain(e, env)?;
+        if kind(&domain) != Kind::Cells {
+            let message = "a normal points out of a region: name the region, not its boundary";
+            let diagnostic = Diagnostic::error(Code::NotOnDomain, span, message);
+            return Err(self.report(diagnostic.label(e.span, kind(&domain).words())));
+        }
+        Ok(Expr { kind: ExprKind::Normal(domain), ty: Type::Value(Shape::Vector, Dimension::NUMBER), span })
+    }
+
     /// `force(block, D)`: the resultant that a block puts on a surface.
     pub(super) fn force(
         &mut self,

@@ -134,10 +134,19 @@ fn pair_integral(
     })
 }
 
+/// Both components of the normal that the roots read, which stand behind the other inputs.
+fn normals(lowering: &Lowering<'_>, roots: &[Id]) -> Vec<SymbolKind> {
+    let kinds = symbols_of(&lowering.pool, roots).into_iter().map(|symbol| lowering.symbols.kind(symbol));
+    let mut sides =
+        kinds.filter_map(|kind| if let SymbolKind::Normal(side, _) = kind { Some(side) } else { None });
+    let side = sides.next();
+    side.into_iter().flat_map(|side| [0, 1].map(|axis| SymbolKind::Normal(side, axis))).collect()
+}
+
 /// `PointFunction { .. }`.
 pub fn point_function(lowering: &mut Lowering<'_>, slots: &Slots, form: &PointForm) -> TokenStream {
     let model = lowering.model;
-    let kinds: Vec<SymbolKind> = form.inputs.iter().map(|input| input.kind()).collect();
+    let mut kinds: Vec<SymbolKind> = form.inputs.iter().map(|input| input.kind()).collect();
     let inputs = form.inputs.iter().map(|one| {
         let [field, component] = [one.input.field.0, one.input.component].map(Literal::usize_unsuffixed);
         let derivative = match one.input.derivative.map(Literal::usize_unsuffixed) {
@@ -148,6 +157,7 @@ pub fn point_function(lowering: &mut Lowering<'_>, slots: &Slots, form: &PointFo
         quote!(PointInput { field: #field, component: #component, derivative: #derivative, rate: #rate })
     });
     let all: Vec<Id> = form.outputs.concat();
+    kinds.extend(normals(lowering, &all));
     let reads_point = reads(lowering, &all, |kind| matches!(kind, SymbolKind::Coordinate(_)));
     let reads_table = reads(lowering, &all, |kind| matches!(kind, SymbolKind::Table(_)));
     let regions = match &form.region {

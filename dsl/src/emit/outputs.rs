@@ -90,6 +90,13 @@ fn observable(
                 _ => quote!(ObservableKind::Max(#domain, #function)),
             }
         }
+        QuantityKind::Side(pieces, regions, value) => {
+            let edges = Region::Edges(pieces.clone());
+            let paths = region_names(model, &edges);
+            let regions = region_names(model, &Region::Cells(regions.clone()));
+            let function = values_at_points(lowering, slots, &edges, &[*value]);
+            quote!(ObservableKind::Side { paths: &[#(#paths),*], regions: &[#(#regions),*], function: #function })
+        }
         QuantityKind::Point(at, region, values) => {
             let at = list(lowering, slots, at, &|values| quote!([#(#values),*]));
             let function = values_at_points(lowering, slots, region, values);

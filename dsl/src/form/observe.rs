@@ -84,6 +84,9 @@ fn rate_of_quantity(lowering: &mut Lowering<'_>, quantity: usize) -> Lowered<Id>
                 .collect();
             QuantityKind::Integral(rated?)
         }
+        QuantityKind::Side(pieces, regions, value) => {
+            QuantityKind::Side(pieces, regions, lowering.rate_of_scalar(value, of.span)?)
+        }
         QuantityKind::Point(at, region, values) => {
             let rated: Lowered<Vec<Id>> =
                 values.into_iter().map(|value| lowering.rate_of_scalar(value, of.span)).collect();
@@ -136,6 +139,9 @@ fn functional(lowering: &mut Lowering<'_>, quantity: usize) -> Lowered<Functiona
             let form =
                 PointForm::new(lowering, &region, values.into_iter().map(|value| vec![value]).collect());
             FunctionalKind::Point(at, form.with_derivatives(lowering))
+        }
+        QuantityKind::Side(..) => {
+            return Err(unsupported(of.span, "an equation cannot read gradients or normals on paths"));
         }
         QuantityKind::Extreme(..) | QuantityKind::PairExtreme(..) | QuantityKind::Force(..) => {
             return Err(unsupported(of.span, "an equation cannot read an extreme value or a resultant"));

@@ -259,6 +259,7 @@ pub(super) fn check(lowering: &Lowering<'_>, term: &Term) -> Lowered<()> {
         symbols_of(&lowering.pool, &term.flux.iter().copied().chain(term.value).collect::<Vec<_>>());
     let kinds: Vec<SymbolKind> = symbols.into_iter().map(|symbol| lowering.symbols.kind(symbol)).collect();
     let gradient = |kind: &SymbolKind| match kind {
+        SymbolKind::Normal(..) => true,
         SymbolKind::Field(input) | SymbolKind::FieldRate(input) => input.derivative.is_some(),
         _ => false,
     };
@@ -266,7 +267,7 @@ pub(super) fn check(lowering: &Lowering<'_>, term: &Term) -> Lowered<()> {
     if on_edges && (kinds.iter().any(gradient) || term.tests.iter().any(|test| test.derivative.is_some())) {
         return Err(unsupported(
             term.span,
-            "gradients on edges are not supported yet; only values and rates of fields are",
+            "gradients and normals in statements on paths are not supported; only values and rates of fields are",
         ));
     }
     let energy_of_quantity = term.block.is_some()

@@ -85,6 +85,7 @@ impl<'m> Lowering<'m> {
             }
             K::MatchRegion(arms, otherwise) => self.match_region(arms, otherwise.as_deref(), span)?,
             K::Reduce(..) | K::Measure(_) | K::Force(..) | K::AtPoint(..) => self.reduce(expr)?,
+            K::Normal(domain) => self.normal(domain, span)?,
             K::Gap(pair) => self.gap(*pair, span)?,
             K::ReduceRun(..) | K::AtTime(..) | K::AtEvent(..) => self.run_value(expr)?,
             K::Held(..) => return Err(unsupported(span, "`for` stands only in the condition of an event")),

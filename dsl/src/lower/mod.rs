@@ -12,6 +12,7 @@ mod expr;
 mod names;
 mod quantity;
 mod reduce;
+mod side;
 mod symbol;
 mod value;
 
@@ -73,6 +74,8 @@ pub struct Lowering<'m> {
     pub quantities: Vec<Quantity>,
     /// Domains whose measure is used.
     pub measures: Vec<Region>,
+    /// Regions out of which normals point, ascending.
+    pub sides: Vec<Vec<RegionId>>,
     /// Numbers by region.
     pub tables: Vec<Table>,
     /// Values of finished runs that tests read.
@@ -102,6 +105,7 @@ impl<'m> Lowering<'m> {
             symbols: Symbols::default(),
             quantities: Vec::new(),
             measures: Vec::new(),
+            sides: Vec::new(),
             tables: Vec::new(),
             run_values: Vec::new(),
             hints: BTreeMap::new(),

@@ -38,6 +38,7 @@ pub fn symbol_name(lowering: &Lowering<'_>, kind: SymbolKind) -> String {
         K::FieldRate(input) => format!("dt_{}", input_name(model, input)),
         K::Frozen(input) => format!("frozen_{}", input_name(model, input)),
         K::Test(input) => format!("test_{}", input_name(model, input)),
+        K::Normal(_, axis) => format!("n_{}", model.coordinates.names[axis]),
         K::Gap(_) => String::from("gap"),
         K::Alpha => String::from("alpha"),
         K::Weight => String::from("weight"),

@@ -20,6 +20,8 @@ pub struct Quantity {
 pub enum QuantityKind {
     /// Integral over cells or edges; a mean has its density divided by the measure.
     Integral(Vec<Part>),
+    /// Integral over edges as seen from the cells of these regions: of gradients and normals.
+    Side(Vec<Piece>, Vec<RegionId>, Id),
     /// Smallest or largest value over the nodes of cells or edges.
     Extreme(Reduction, Region, Vec<Id>),
     /// Value at a reference point, which may lie in any of the regions.
@@ -37,7 +39,7 @@ impl QuantityKind {
             QuantityKind::Integral(parts) => parts.iter().map(|part| part.density).collect(),
             QuantityKind::Extreme(_, _, values) => values.clone(),
             QuantityKind::Point(at, _, values) => at.iter().chain(values).copied().collect(),
-            QuantityKind::PairExtreme(_, _, value) => vec![*value],
+            QuantityKind::Side(_, _, value) | QuantityKind::PairExtreme(_, _, value) => vec![*value],
             QuantityKind::Force(..) => Vec::new(),
         }
     }

@@ -105,27 +105,38 @@ impl<'m> Lowering<'m> {
             .map(|k| match reduction {
                 Reduction::Min | Reduction::Max => {
                     let values = parts.iter().map(|(_, components)| components[k]).collect();
-                    self.quantity(QuantityKind::Extreme(reduction, region.clone(), values), expr)
+                    Ok(self.quantity(QuantityKind::Extreme(reduction, region.clone(), values), expr))
                 }
                 Reduction::Mean | Reduction::Integral => self.integral(&parts, k, divisor, expr),
             })
-            .collect();
+            .collect::<Lowered<_>>()?;
         Ok(Value::from_components(&reduced))
     }
 
     /// Integral of component `k` of the parts' densities.
-    fn integral(&mut self, parts: &[(Region, Vec<Id>)], k: usize, divisor: Option<Id>, expr: &'m Expr) -> Id {
+    fn integral(
+        &mut self,
+        parts: &[(Region, Vec<Id>)],
+        k: usize,
+        divisor: Option<Id>,
+        expr: &'m Expr,
+    ) -> Lowered<Id> {
         let mut densities = Vec::new();
         for (region, components) in parts {
             let density = divisor.map_or(components[k], |divisor| self.pool.div(components[k], divisor));
+            if let Region::Edges(pieces) = region
+                && let Some(side) = self.side_of(pieces, density, expr.span)?
+            {
+                return Ok(self.quantity(QuantityKind::Side(pieces.clone(), side, density), expr));
+            }
             if self.pool.as_constant(density) != Some(0.0) {
                 densities.push(Part { region: region.clone(), density });
             }
         }
         if densities.is_empty() {
-            self.pool.zero()
+            Ok(self.pool.zero())
         } else {
-            self.quantity(QuantityKind::Integral(densities), expr)
+            Ok(self.quantity(QuantityKind::Integral(densities), expr))
         }
     }
 

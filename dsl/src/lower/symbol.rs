@@ -45,6 +45,8 @@ pub enum SymbolKind {
     Frozen(FieldInput),
     /// The test function of a field.
     Test(FieldInput),
+    /// In-plane component (second number) of the unit normal out of regions: an index into [`Lowering::sides`](super::Lowering::sides).
+    Normal(usize, usize),
     /// Gap of a contact pair at a surface point.
     Gap(PairId),
     /// Factor d rate / d value of the time integrator.

@@ -238,6 +238,8 @@ pub enum ExprKind {
     Measure(Domain),
     /// `force(block, D)`: resultant that a block puts on a surface \[force\].
     Force(BlockId, Domain),
+    /// `normal(D)`: unit normal out of regions, on paths.
+    Normal(Domain),
     /// `pair.gap`: signed distance, negative when penetrating.
     Gap(PairId),
     /// `e@(r, z)`: value at a reference point.
@@ -267,6 +269,7 @@ impl Expr {
             | ExprKind::Identity
             | ExprKind::Measure(_)
             | ExprKind::Force(..)
+            | ExprKind::Normal(_)
             | ExprKind::Gap(_)
             | ExprKind::OutcomeIs(_) => Vec::new(),
             ExprKind::Tuple(items) => items.iter().collect(),

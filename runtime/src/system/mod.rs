@@ -18,6 +18,7 @@ mod point;
 mod probe;
 mod ramp;
 mod scalars;
+mod sides;
 mod start;
 mod states;
 mod terms;

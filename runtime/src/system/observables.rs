@@ -2,6 +2,7 @@
 
 use super::contact::PairOn;
 use super::point::{Place, Sampler, locate, node_places};
+use super::sides::{SidePoint, side_points};
 use super::terms::{At, Term};
 use super::unknowns::{Unknowns, domain_nodes};
 use crate::error::Error;
@@ -25,6 +26,8 @@ pub enum ObservableOn {
 pub enum Value {
     /// Sum of integrals.
     Integrals(Vec<Term>),
+    /// Integral over edges seen from one side.
+    Side(Sampler, Vec<SidePoint>),
     /// Smallest (sign 1) or largest (sign -1) of sampled values.
     Extreme {
         /// 1 for the smallest, -1 for the largest.
@@ -48,6 +51,7 @@ pub enum Value {
 impl ObservableOn {
     /// Prepares an observable.
     pub fn new(
+        program: &'static Program,
         observable: &'static Observable,
         mesh: &Mesh,
         unknowns: &Unknowns,
@@ -66,6 +70,9 @@ impl ObservableOn {
             ObservableKind::Integral(integrals) => Value::Integrals(
                 integrals.iter().map(|i| Term::new(i, mesh, unknowns)).collect::<Result<_, _>>()?,
             ),
+            ObservableKind::Side { paths, regions, function } => {
+                Value::Side(Sampler::new(function, mesh), side_points(mesh, paths, regions, program.weight)?)
+            }
             ObservableKind::Min(domain, function) => extreme(1.0, function, node_places(mesh, *domain)?),
             ObservableKind::Max(domain, function) => extreme(-1.0, function, node_places(mesh, *domain)?),
             ObservableKind::Point(at, function) => extreme(1.0, function, vec![locate(mesh, at(g))?]),
@@ -80,6 +87,15 @@ impl Value {
     pub fn evaluate(&mut self, mesh: &Mesh, unknowns: &Unknowns, pairs: &[PairOn], at: At<'_>) -> f64 {
         match self {
             Self::Integrals(terms) => terms.iter_mut().map(|t| t.value(at)).sum(),
+            Self::Side(sampler, points) => {
+                let mut sum = 0.0;
+                let mut out = vec![0.0; sampler.outputs()];
+                for point in points.iter() {
+                    sampler.evaluate_with(mesh, unknowns, &point.place, &point.normal, at, &mut out);
+                    sum += point.weight * out[0];
+                }
+                sum
+            }
             Self::Extreme { sign, sampler, places } => {
                 let mut best = f64::INFINITY;
                 let mut out = vec![0.0; sampler.outputs()];
@@ -99,10 +115,10 @@ impl Value {
 
 /// Observables of a program on a mesh.
 pub fn prepare(
-    program: &Program,
+    program: &'static Program,
     mesh: &Mesh,
     unknowns: &Unknowns,
     g: &[f64],
 ) -> Result<Vec<ObservableOn>, Error> {
-    program.observables.iter().map(|o| ObservableOn::new(o, mesh, unknowns, g)).collect()
+    program.observables.iter().map(|o| ObservableOn::new(program, o, mesh, unknowns, g)).collect()
 }

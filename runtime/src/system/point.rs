@@ -105,11 +105,25 @@ impl Sampler {
 
     /// Evaluates at a place; `out` has the function's number of outputs.
     pub fn evaluate(&mut self, mesh: &Mesh, unknowns: &Unknowns, place: &Place, at: At<'_>, out: &mut [f64]) {
+        self.evaluate_with(mesh, unknowns, place, &[], at, out);
+    }
+
+    /// Evaluates at a place with further inputs behind those of the fields.
+    pub fn evaluate_with(
+        &mut self,
+        mesh: &Mesh,
+        unknowns: &Unknowns,
+        place: &Place,
+        further: &[f64],
+        at: At<'_>,
+        out: &mut [f64],
+    ) {
         self.inputs.clear();
         for &input in self.function.inputs {
             let from = if input.rate { at.rates } else { at.y };
             self.inputs.push(place.weights(input, mesh, unknowns).map(|(u, w)| w * from[u]).sum());
         }
+        self.inputs.extend_from_slice(further);
         let region = self.region[mesh.cell_region[place.cell] as usize].unwrap_or(0);
         (self.function.evaluate)(region, place.x, &self.inputs, at.g, out);
     }

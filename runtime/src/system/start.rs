@@ -3,7 +3,7 @@
 use super::System;
 use super::unknowns::{NONE, Unknowns, domain_nodes};
 use crate::error::{Cause, Error, SolveError};
-use crate::generated::{Domain, Program, Start};
+use crate::generated::{Program, Start};
 use crate::mesh::Mesh;
 
 /// Nodes nearer to the axis than this part of the largest radius are on it; the rest is rounding.

@@ -182,6 +182,7 @@ impl Model {
             ExprKind::Force(id, domain) => {
                 format!("force({}, {})", self.blocks[id.0].name, self.domain(domain))
             }
+            ExprKind::Normal(domain) => format!("normal({})", self.domain(domain)),
             ExprKind::Gap(id) => format!("{}.gap", self.pairs[id.0].name),
             _ => self.bound(e).0,
         }

@@ -3,6 +3,7 @@
 use crate::error::Error;
 use crate::ordering::{minimum_degree, put_off};
 use crate::pattern::{Graph, Kind, Pattern, inverse};
+use crate::schedule::Schedule;
 use crate::supernodes::{Size, Supernodes};
 use crate::tree::{EliminationTree, NONE};
 use std::ops::Range;
@@ -25,8 +26,6 @@ pub struct Analysis {
     pub(crate) entries: Vec<(u32, u32)>,
     /// Numbers in the factors.
     pub(crate) values: usize,
-    /// Numbers on the two stacks of remainders.
-    pub(crate) stacks: [usize; 2],
     operations: f64,
 }
 
@@ -50,10 +49,6 @@ pub(crate) struct Front {
     pub values: Range<usize>,
     /// Rows below that are columns of the parent.
     pub passed: usize,
-    /// Stack on which the remainder lies.
-    pub stack: usize,
-    /// Where on the stack.
-    pub offset: usize,
 }
 
 impl Front {
@@ -104,13 +99,11 @@ impl Analysis {
             children: Vec::new(),
             entries: Vec::new(),
             values: 0,
-            stacks: [0; 2],
             operations: 0.0,
             order: supernodes.order,
         };
         analysis.list_children(&supernodes.parents);
         analysis.find_rows(graph, &place);
-        analysis.place_remainders(&supernodes.parents);
         analysis.values = analysis.fronts.last().map_or(0, |front| front.values.end);
         if analysis.values > u32::MAX as usize * PADDING {
             return Err(Error::TooLarge);
@@ -147,11 +140,17 @@ impl Analysis {
         self.operations
     }
 
-    /// Bytes that this analysis and the factors take at most.
-    pub fn memory(&self) -> usize {
-        let numbers = self.values + self.stacks.iter().sum::<usize>();
+    /// Bytes that this analysis and the factors take at most, on some number of threads.
+    pub fn memory(&self, threads: usize) -> usize {
+        let stacks = Schedule::new(self, threads).stacks;
+        let numbers = self.values + stacks.as_flattened().iter().sum::<usize>();
         let indices = self.rows.len() + self.targets.len() + 2 * self.entries.len();
         8 * numbers + 4 * indices + std::mem::size_of::<Front>() * self.fronts.len()
+    }
+
+    /// Children of a front, in order.
+    pub(crate) fn children(&self, front: &Front) -> impl DoubleEndedIterator<Item = usize> + Clone + use<'_> {
+        self.children[front.children.clone()].iter().map(|&child| child as usize)
     }
 
     fn list_children(&mut self, parents: &[u32]) {
@@ -198,26 +197,6 @@ impl Analysis {
             front.rows = begin..self.rows.len();
             let length = front.width * (front.width + blocks * front.padded());
             front.values = offset..offset + length.next_multiple_of(PADDING);
-        }
-    }
-
-    /// Gives every remainder a place on the stack of its depth's parity: while a front is assembled, the remainders of its
-    /// children lie on top of one stack and its own grows on the other.
-    fn place_remainders(&mut self, parents: &[u32]) {
-        for k in (0..parents.len()).rev() {
-            let depth = if parents[k] == NONE { 0 } else { 1 - self.fronts[parents[k] as usize].stack };
-            self.fronts[k].stack = depth;
-        }
-        let mut tops = [0; 2];
-        for k in 0..parents.len() {
-            let children = self.fronts[k].children.clone();
-            if let Some(&child) = self.children[children].first() {
-                tops[1 - self.fronts[k].stack] = self.fronts[child as usize].offset;
-            }
-            let front = &mut self.fronts[k];
-            front.offset = tops[front.stack];
-            tops[front.stack] += front.remainder();
-            self.stacks[front.stack] = self.stacks[front.stack].max(tops[front.stack]);
         }
     }
 
@@ -291,8 +270,6 @@ fn fronts(supernodes: &Supernodes) -> Vec<Front> {
         entries: 0..0,
         values: 0..0,
         passed: 0,
-        stack: 0,
-        offset: 0,
     };
     supernodes.starts.windows(2).map(front).collect()
 }

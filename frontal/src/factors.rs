@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::front::{Blocks, Scratch, assemble, eliminate};
 use crate::pattern::Kind;
 use crate::pivot::{Pivots, Threshold};
+use crate::schedule::{Place, Schedule};
 
 /// Pivots of a scaled matrix below this are rounding errors.
 const ZERO_PIVOT: f64 = 1e-13;
@@ -17,9 +18,27 @@ pub struct Factors {
     pub(crate) values: Vec<f64>,
     /// Row that every column changed places with, counted from the first of its front.
     pub(crate) exchanges: Vec<u32>,
+    schedule: Schedule,
+    sites: Vec<Site>,
+    pub(crate) work: Vec<f64>,
+}
+
+/// Memory for the fronts that are eliminated one after the other.
+struct Site {
     stacks: [Vec<f64>; 2],
     scratch: Scratch,
-    pub(crate) work: Vec<f64>,
+}
+
+/// A front and where its factors go.
+type Task<'a> = (usize, &'a mut [f64], &'a mut [u32]);
+
+/// A matrix to factor.
+#[derive(Clone, Copy)]
+struct Job<'a> {
+    analysis: &'a Analysis,
+    places: &'a [Place],
+    entries: &'a [f64],
+    threshold: Threshold,
 }
 
 impl Factors {
@@ -28,12 +47,25 @@ impl Factors {
     /// # Errors
     /// [`Error::TooLarge`].
     pub fn new(analysis: Analysis) -> Result<Self, Error> {
-        let [first, second] = analysis.stacks;
+        Self::with_threads(analysis, 1)
+    }
+
+    /// As [`Self::new`], for factorisations on several threads.
+    ///
+    /// Results differ from those on one thread by no more than the order of sums inside large products.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_threads(analysis: Analysis, threads: usize) -> Result<Self, Error> {
+        let schedule = Schedule::new(&analysis, threads);
+        let site = |[first, second]: &[usize; 2]| {
+            Ok(Site { stacks: [zeros(*first)?, zeros(*second)?], scratch: Scratch::default() })
+        };
         Ok(Self {
             values: zeros(analysis.values)?,
             exchanges: vec![0; analysis.size()],
-            stacks: [zeros(first)?, zeros(second)?],
-            scratch: Scratch::default(),
+            sites: schedule.stacks.iter().map(site).collect::<Result<_, Error>>()?,
+            schedule,
             work: Vec::new(),
             analysis,
         })
@@ -44,66 +76,38 @@ impl Factors {
         &self.analysis
     }
 
+    /// Threads that factorisations use.
+    pub fn threads(&self) -> usize {
+        (self.sites.len() - 1).max(1)
+    }
+
     /// Factors the matrix with `entries` at the positions of the pattern, the largest near one.
     ///
     /// # Errors
     /// [`Error::NotPositive`] for Cholesky.
     pub fn factor(&mut self, entries: &[f64]) -> Result<Pivots, Error> {
+        let threads = self.threads();
         let largest = entries.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
         let threshold = Threshold { zero: ZERO_PIVOT * largest, substitute: SUBSTITUTE * largest };
-        let mut pivots = Pivots::NONE;
-        let analysis = &self.analysis;
-        for front in &analysis.fronts {
-            let [even, odd] = &mut self.stacks;
-            let (own, others) = if front.stack == 0 { (even, odd) } else { (odd, even) };
-            let remainder = &mut own[front.offset..][..front.remainder()];
-            let values = &mut self.values[front.values.clone()];
-            values.fill(0.0);
-            for &(source, target) in &analysis.entries[front.entries.clone()] {
-                values[target as usize] += entries[source as usize];
-            }
-            let mut blocks = Blocks::of(front, analysis.kind, values);
-            let fresh = front.children.is_empty();
-            if !fresh {
-                remainder.fill(0.0);
-            }
-            for &child in &analysis.children[front.children.clone()] {
-                let child = &analysis.fronts[child as usize];
-                let source = &others[child.offset..][..child.remainder()];
-                assemble(analysis, (front, &mut blocks, remainder), (child, source));
-            }
-            let exchanges = &mut self.exchanges[front.first..][..front.width];
-            let eliminated = eliminate(
-                front,
-                analysis.kind,
-                blocks,
-                (remainder, fresh),
-                (exchanges, threshold),
-                &mut self.scratch,
-            );
-            match eliminated {
-                Ok(own) => pivots = pivots.and(own),
-                Err(turn) => return Err(Error::NotPositive { equation: analysis.order[turn] as usize }),
-            }
+        let job = Job { analysis: &self.analysis, places: &self.schedule.places, entries, threshold };
+        let mut tasks = tasks(&self.schedule, &self.analysis, &mut self.values, &mut self.exchanges);
+        let (Some((last, workers)), Some(last_tasks)) = (self.sites.split_last_mut(), tasks.pop()) else {
+            return Err(Error::NoEquations);
+        };
+        let shares = std::thread::scope(|scope| {
+            let start = |(tasks, site)| scope.spawn(move || job.run(tasks, site, &[], 1));
+            let running: Vec<_> = tasks.into_iter().zip(&mut *workers).map(start).collect();
+            running.into_iter().map(|share| share.join()).collect::<Vec<_>>()
+        });
+        let mut outcome = Ok(Pivots::NONE);
+        for share in shares {
+            let share = share.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            outcome = merge(outcome, share);
         }
-        Ok(pivots)
-    }
-
-    /// Solves in place for the columns of `x`, as many numbers each as there are equations.
-    pub fn solve(&mut self, x: &mut [f64]) {
-        let size = self.analysis.size();
-        let mut permuted = std::mem::take(&mut self.work);
-        permuted.resize(size, 0.0);
-        for column in x.chunks_exact_mut(size) {
-            for (value, &equation) in permuted.iter_mut().zip(&self.analysis.order) {
-                *value = column[equation as usize];
-            }
-            self.solve_ordered(&mut permuted);
-            for (value, &equation) in permuted.iter().zip(&self.analysis.order) {
-                column[equation as usize] = *value;
-            }
+        if outcome.is_ok() {
+            outcome = merge(outcome, job.run(last_tasks, last, workers, threads));
         }
-        self.work = permuted;
+        outcome.map_err(|turn| Error::NotPositive { equation: self.analysis.order[turn] as usize })
     }
 
     /// Blocks of a front.
@@ -112,6 +116,93 @@ impl Factors {
         let (below, rest) = rest.split_at(front.width * front.padded());
         let right = if self.analysis.kind == Kind::Unsymmetric { rest } else { below };
         (square, below, &right[..below.len()])
+    }
+}
+
+impl Job<'_> {
+    /// Eliminates fronts one after the other; `done` holds the sites of other children.
+    ///
+    /// # Errors
+    /// The turn of a pivot of Cholesky that is not positive.
+    fn run(
+        self,
+        tasks: Vec<Task<'_>>,
+        site: &mut Site,
+        done: &[Site],
+        threads: usize,
+    ) -> Result<Pivots, usize> {
+        let mut pivots = Pivots::NONE;
+        for task in tasks {
+            pivots = pivots.and(self.eliminate(task, site, done, threads)?);
+        }
+        Ok(pivots)
+    }
+
+    fn eliminate(
+        self,
+        (k, values, exchanges): Task<'_>,
+        site: &mut Site,
+        done: &[Site],
+        threads: usize,
+    ) -> Result<Pivots, usize> {
+        let analysis = self.analysis;
+        let (front, place) = (&analysis.fronts[k], self.places[k]);
+        let [even, odd] = &mut site.stacks;
+        let (own, others) = if place.stack == 0 { (even, odd) } else { (odd, even) };
+        let remainder = &mut own[place.offset..][..front.remainder()];
+        values.fill(0.0);
+        for &(source, target) in &analysis.entries[front.entries.clone()] {
+            values[target as usize] += self.entries[source as usize];
+        }
+        let mut blocks = Blocks::of(front, analysis.kind, values);
+        let fresh = front.children.is_empty();
+        if !fresh {
+            remainder.fill(0.0);
+        }
+        for child in analysis.children(front) {
+            let Place { site, stack, offset } = self.places[child];
+            let child = &analysis.fronts[child];
+            let stack = if site == place.site { &*others } else { &done[site].stacks[stack] };
+            let source = &stack[offset..][..child.remainder()];
+            assemble(analysis, (front, &mut blocks, remainder), (child, source));
+        }
+        let remainder = (remainder, fresh);
+        eliminate(
+            front,
+            analysis.kind,
+            blocks,
+            remainder,
+            (exchanges, self.threshold),
+            &mut site.scratch,
+            threads,
+        )
+    }
+}
+
+/// The fronts of every site.
+fn tasks<'a>(
+    schedule: &Schedule,
+    analysis: &Analysis,
+    mut values: &'a mut [f64],
+    mut exchanges: &'a mut [u32],
+) -> Vec<Vec<Task<'a>>> {
+    let list = |site: &Vec<u32>| Vec::with_capacity(site.len());
+    let mut tasks: Vec<Vec<Task<'a>>> = schedule.sites.iter().map(list).collect();
+    for (k, (front, place)) in analysis.fronts.iter().zip(&schedule.places).enumerate() {
+        let (own, rest) = values.split_at_mut(front.values.len());
+        let (rows, others) = exchanges.split_at_mut(front.width);
+        tasks[place.site].push((k, own, rows));
+        (values, exchanges) = (rest, others);
+    }
+    tasks
+}
+
+/// Pivots of two parts; the earlier failure.
+fn merge(a: Result<Pivots, usize>, b: Result<Pivots, usize>) -> Result<Pivots, usize> {
+    match (a, b) {
+        (Ok(a), Ok(b)) => Ok(a.and(b)),
+        (Err(a), Err(b)) => Err(a.min(b)),
+        (Err(turn), _) | (_, Err(turn)) => Err(turn),
     }
 }
 

@@ -1,10 +1,11 @@
 //! The work of one front: assemble it, eliminate its columns, leave a remainder.
 
-use crate::analysis::{Analysis, Front};
+use crate::analysis::{Analysis, Front, PADDING};
 use crate::kernel::{RightSolve, Update};
 use crate::pattern::Kind;
 use crate::pivot::{Block, Pivots, Threshold};
-use faer::linalg::matmul::{matmul, triangular};
+use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_unit_lower_triangular_in_place};
 use faer::{Accum, MatMut, MatRef, Par};
 
@@ -13,6 +14,8 @@ const WIDE: usize = 48;
 /// Columns, and operations, from which products are left to the library.
 const DEEP: usize = 24;
 const LARGE: usize = 1 << 20;
+/// Operations from which threads share a front.
+const SHARED: usize = 1 << 23;
 
 /// The numbers of a front: the square block, the rows below, and for LU the columns on the right, transposed.
 pub(crate) struct Blocks<'a> {
@@ -87,6 +90,7 @@ pub(crate) fn eliminate(
     (remainder, fresh): (&mut [f64], bool),
     (exchanges, threshold): (&mut [u32], Threshold),
     scratch: &mut Scratch,
+    threads: usize,
 ) -> Result<Pivots, usize> {
     let (width, padded) = (front.width, front.padded());
     let mut pivots = Pivots::NONE;
@@ -105,19 +109,20 @@ pub(crate) fn eliminate(
         return Ok(pivots);
     }
     let square = &*square;
+    let threads = if width * padded * padded < SHARED { 1 } else { threads };
     scratch.reciprocals.clear();
     scratch.reciprocals.extend((0..width).map(|k| square[k * (width + 1)].recip()));
     match kind {
-        Kind::Symmetric => solve_lower(square, below, padded, &scratch.reciprocals),
+        Kind::Symmetric => solve_lower(square, below, padded, &scratch.reciprocals, threads),
         Kind::Unsymmetric => {
-            solve_upper(square, below, padded, scratch);
+            solve_upper(square, below, padded, scratch, threads);
             scratch.reciprocals.fill(1.0);
-            solve_unit_lower(square, right, padded, &scratch.reciprocals);
+            solve_unit_lower(square, right, padded, &scratch.reciprocals, threads);
         }
     }
     let lower = kind == Kind::Symmetric;
     let b = if lower { &*below } else { &*right };
-    update(front, remainder, below, b, fresh, lower);
+    update(front, remainder, below, b, fresh, lower, threads);
     Ok(pivots)
 }
 
@@ -129,29 +134,29 @@ fn swap_columns(values: &mut [f64], height: usize, a: usize, b: usize) {
 }
 
 /// `X = X L^-T` for Cholesky.
-fn solve_lower(square: &[f64], x: &mut [f64], rows: usize, reciprocals: &[f64]) {
+fn solve_lower(square: &[f64], x: &mut [f64], rows: usize, reciprocals: &[f64], threads: usize) {
     let width = reciprocals.len();
     if width < WIDE {
         return RightSolve { x, t: square, reciprocals, rows, width }.run();
     }
-    let x = MatMut::from_column_major_slice_mut(x, rows, width);
     let square = MatRef::from_column_major_slice(square, width, width);
-    solve_lower_triangular_in_place(square, x.transpose_mut(), Par::Seq);
+    let solve = |x: MatMut<'_, f64>| solve_lower_triangular_in_place(square, x, Par::Seq);
+    over_columns(MatMut::from_column_major_slice_mut(x, rows, width).transpose_mut(), threads, &solve);
 }
 
 /// `X = X L^-T` with ones on the diagonal.
-fn solve_unit_lower(square: &[f64], x: &mut [f64], rows: usize, ones: &[f64]) {
+fn solve_unit_lower(square: &[f64], x: &mut [f64], rows: usize, ones: &[f64], threads: usize) {
     let width = ones.len();
     if width < WIDE {
         return RightSolve { x, t: square, reciprocals: ones, rows, width }.run();
     }
-    let x = MatMut::from_column_major_slice_mut(x, rows, width);
     let square = MatRef::from_column_major_slice(square, width, width);
-    solve_unit_lower_triangular_in_place(square, x.transpose_mut(), Par::Seq);
+    let solve = |x: MatMut<'_, f64>| solve_unit_lower_triangular_in_place(square, x, Par::Seq);
+    over_columns(MatMut::from_column_major_slice_mut(x, rows, width).transpose_mut(), threads, &solve);
 }
 
 /// `X = X U^-1`.
-fn solve_upper(square: &[f64], x: &mut [f64], rows: usize, scratch: &mut Scratch) {
+fn solve_upper(square: &[f64], x: &mut [f64], rows: usize, scratch: &mut Scratch, threads: usize) {
     let width = scratch.reciprocals.len();
     if width < WIDE {
         let t = &mut scratch.triangle;
@@ -161,13 +166,13 @@ fn solve_upper(square: &[f64], x: &mut [f64], rows: usize, scratch: &mut Scratch
         }
         return RightSolve { x, t, reciprocals: &scratch.reciprocals, rows, width }.run();
     }
-    let x = MatMut::from_column_major_slice_mut(x, rows, width);
-    let square = MatRef::from_column_major_slice(square, width, width);
-    solve_lower_triangular_in_place(square.transpose(), x.transpose_mut(), Par::Seq);
+    let square = MatRef::from_column_major_slice(square, width, width).transpose();
+    let solve = |x: MatMut<'_, f64>| solve_lower_triangular_in_place(square, x, Par::Seq);
+    over_columns(MatMut::from_column_major_slice_mut(x, rows, width).transpose_mut(), threads, &solve);
 }
 
 /// Remainder, or its lower triangle: `C -= A B^T`.
-fn update(front: &Front, c: &mut [f64], a: &[f64], b: &[f64], fresh: bool, lower: bool) {
+fn update(front: &Front, c: &mut [f64], a: &[f64], b: &[f64], fresh: bool, lower: bool, threads: usize) {
     let (rows, columns, depth) = (front.padded(), front.below(), front.width);
     if depth < DEEP || rows * columns * depth < LARGE {
         return Update { c, a, b, rows, columns, depth, stride: rows, replace: fresh, lower }.run();
@@ -176,10 +181,55 @@ fn update(front: &Front, c: &mut [f64], a: &[f64], b: &[f64], fresh: bool, lower
     let a = MatRef::from_column_major_slice(a, rows, depth).subrows(0, columns);
     let b = MatRef::from_column_major_slice(b, rows, depth).subrows(0, columns).transpose();
     let sum = if fresh { Accum::Replace } else { Accum::Add };
-    if lower {
-        use triangular::BlockStructure::{Rectangular, TriangularLower};
-        triangular::matmul(c, TriangularLower, sum, a, Rectangular, b, Rectangular, -1.0, Par::Seq);
-    } else {
-        matmul(c, sum, a, b, -1.0, Par::Seq);
+    if lower { lower_product(c, sum, a, b, threads) } else { product(c, sum, a, b, threads) }
+}
+
+/// `C -= A B`, columns shared among threads.
+fn product(c: MatMut<'_, f64>, sum: Accum, a: MatRef<'_, f64>, b: MatRef<'_, f64>, threads: usize) {
+    if threads < 2 {
+        return matmul(c, sum, a, b, -1.0, Par::Seq);
     }
+    let middle = share(c.ncols(), threads);
+    let (left, right) = c.split_at_col_mut(middle);
+    let (b_left, b_right) = b.split_at_col(middle);
+    std::thread::scope(|scope| {
+        scope.spawn(move || product(left, sum, a, b_left, threads / 2));
+        product(right, sum, a, b_right, threads - threads / 2);
+    });
+}
+
+/// Lower triangle of `C -= A B`, the square below the first half of the columns on other threads.
+fn lower_product(c: MatMut<'_, f64>, sum: Accum, a: MatRef<'_, f64>, b: MatRef<'_, f64>, threads: usize) {
+    if threads < 2 {
+        let (whole, lower) = (BlockStructure::Rectangular, BlockStructure::TriangularLower);
+        return triangular::matmul(c, lower, sum, a, whole, b, whole, -1.0, Par::Seq);
+    }
+    let middle = c.ncols() / 2;
+    let (left, right) = c.split_at_col_mut(middle);
+    let (upper, below) = left.split_at_row_mut(middle);
+    let (_, corner) = right.split_at_row_mut(middle);
+    let ((a_upper, a_lower), (b_left, b_right)) = (a.split_at_row(middle), b.split_at_col(middle));
+    std::thread::scope(|scope| {
+        scope.spawn(move || product(below, sum, a_lower, b_left, threads / 2));
+        lower_product(upper, sum, a_upper, b_left, threads - threads / 2);
+        lower_product(corner, sum, a_lower, b_right, threads - threads / 2);
+    });
+}
+
+/// Applies an operation to groups of columns on some threads.
+fn over_columns(x: MatMut<'_, f64>, threads: usize, operation: &(impl Fn(MatMut<'_, f64>) + Sync)) {
+    if threads < 2 {
+        return operation(x);
+    }
+    let middle = share(x.ncols(), threads);
+    let (left, right) = x.split_at_col_mut(middle);
+    std::thread::scope(|scope| {
+        scope.spawn(move || over_columns(left, threads / 2, operation));
+        over_columns(right, threads - threads / 2, operation);
+    });
+}
+
+/// Columns for half of the threads, a multiple of what fits registers.
+fn share(columns: usize, threads: usize) -> usize {
+    (columns * (threads / 2) / threads).next_multiple_of(PADDING).min(columns)
 }

@@ -20,6 +20,7 @@ mod pattern;
 mod pivot;
 mod refinement;
 mod scaling;
+mod schedule;
 mod solver;
 mod substitution;
 mod supernodes;

@@ -3,8 +3,8 @@
 //! Pivots are looked for among the rows of the block only. One that is no more than a rounding error of the matrix is replaced
 //! by a small number and recorded; refinement repairs the solution.
 
-use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_unit_lower_triangular_in_place};
 use faer::{Accum, MatMut, Par};
 use pulp::Arch;

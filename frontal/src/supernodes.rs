@@ -43,7 +43,8 @@ impl Size {
         k * (0.5 * k + m)
     }
 
-    fn time(self, kind: Kind) -> f64 {
+    /// Estimated time of assembly and elimination \[ns\].
+    pub fn time(self, kind: Kind) -> f64 {
         let rows = (self.width + self.below) as f64;
         FRONT + ENTRY * rows * rows + OPERATION * self.operations(kind)
     }

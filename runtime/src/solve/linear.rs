@@ -5,21 +5,23 @@
 //! and refined where needed, and all storage is kept between factorisations.
 
 mod error;
+mod indefinite;
 mod matrix;
 mod pivoting;
 mod storage;
 mod sweep;
-mod symmetric;
 #[cfg(test)]
 mod tests;
 mod unsymmetric;
 
 use super::sparse::{MatrixKind, SparsePattern};
 pub use ansatz_frontal::SolveReport;
+use ansatz_frontal::{Analysis, Error, Factors};
 pub(super) use ansatz_frontal::{BACKWARD_ERROR, REFINEMENTS};
 pub use error::LinearError;
+use indefinite::IndefiniteFactor;
 use matrix::ScaledMatrix;
-use symmetric::{Analysis, Pivots, SymmetricFactor};
+
 use unsymmetric::{ACCEPTABLE, UnsymmetricFactor};
 
 /// Pivots of the scaled matrix below this are rounding errors: the matrix is singular.
@@ -72,14 +74,19 @@ impl FactorReport {
 /// Direct solver for matrices that share one pattern.
 pub struct LinearSolver {
     matrix: ScaledMatrix,
-    /// Present for symmetric patterns.
-    symmetric: Option<SymmetricFactor>,
-    /// Present for unsymmetric patterns, and once a symmetric matrix has needed it.
-    unsymmetric: Option<UnsymmetricFactor>,
+    factors: AllFactors,
     factored: Option<Method>,
     rhs: Vec<f64>,
     solution: Vec<f64>,
     residual: Vec<f64>,
+}
+
+/// Storage for the factors of every method, allocated when first needed.
+#[derive(Default)]
+struct AllFactors {
+    definite: Option<Factors>,
+    indefinite: Option<IndefiniteFactor>,
+    unsymmetric: Option<UnsymmetricFactor>,
 }
 
 impl LinearSolver {
@@ -88,21 +95,15 @@ impl LinearSolver {
     /// # Errors
     /// [`LinearError::NoEquations`], [`LinearError::TooLarge`].
     pub fn new(pattern: &SparsePattern) -> Result<Self, LinearError> {
-        let (matrix, symmetric, unsymmetric) = match pattern.kind() {
+        let mut factors = AllFactors::default();
+        match pattern.kind() {
             MatrixKind::Symmetric => {
-                let analysis = Analysis::new(pattern)?;
-                let matrix = ScaledMatrix::new(pattern, analysis.order());
-                let factor = SymmetricFactor::new(analysis, matrix.pattern())?;
-                (matrix, Some(factor), None)
+                factors.definite = Some(Factors::new(Analysis::new(pattern.view(), &[])?)?);
             }
-            MatrixKind::Unsymmetric => {
-                let factor = UnsymmetricFactor::new(pattern)?;
-                let matrix = ScaledMatrix::new(pattern, (0..pattern.size() as u32).collect());
-                (matrix, None, Some(factor))
-            }
-        };
+            MatrixKind::Unsymmetric => factors.unsymmetric = Some(UnsymmetricFactor::new(pattern)?),
+        }
         let [rhs, solution, residual] = [(); 3].map(|()| vec![0.0; pattern.size()]);
-        Ok(Self { matrix, symmetric, unsymmetric, factored: None, rhs, solution, residual })
+        Ok(Self { matrix: ScaledMatrix::new(pattern), factors, factored: None, rhs, solution, residual })
     }
 
     /// Number of equations.
@@ -120,16 +121,7 @@ impl LinearSolver {
     pub fn factor(&mut self, values: &[f64], expected: Definiteness) -> Result<FactorReport, LinearError> {
         self.factored = None;
         self.matrix.load(values)?;
-        let report = match &mut self.symmetric {
-            Some(factor) => factor_symmetric(factor, &self.matrix, expected),
-            None => Ok(None),
-        };
-        let report = match report {
-            Ok(Some(report)) => Ok(report),
-            Ok(None) => factor_unsymmetric(&mut self.unsymmetric, &self.matrix),
-            Err(error) => Err(error),
-        };
-        let report = report.map_err(|error| self.matrix.in_original_numbers(error))?;
+        let report = self.factors.factor(&self.matrix, expected)?;
         self.factored = Some(report.method);
         Ok(report)
     }
@@ -145,9 +137,10 @@ impl LinearSolver {
         self.load(rhs)?;
         let mut report = self.refine()?;
         let accurate = report.backward_error <= ACCEPTABLE;
-        if let (false, Some(Method::Lu), Some(factor)) = (accurate, self.factored, &mut self.unsymmetric) {
+        let lu = &mut self.factors.unsymmetric;
+        if let (false, Some(Method::Lu), Some(factor)) = (accurate, self.factored, lu) {
             self.factored = None;
-            factor.factor_pivoting().map_err(|error| self.matrix.in_original_numbers(error))?;
+            factor.factor_pivoting()?;
             self.factored = Some(Method::PivotingLu);
             report = self.refine()?;
         }
@@ -160,13 +153,13 @@ impl LinearSolver {
     /// # Errors
     /// As [`Self::solve`].
     pub(super) fn solve_unchecked(&mut self, rhs: &mut [f64]) -> Result<(), LinearError> {
-        let perturbed = self.unsymmetric.as_ref().is_some_and(UnsymmetricFactor::is_perturbed);
+        let perturbed = self.factors.unsymmetric.as_ref().is_some_and(UnsymmetricFactor::is_perturbed);
         if perturbed && self.factored == Some(Method::Lu) {
             return self.solve(rhs).map(drop);
         }
         self.load(rhs)?;
         self.solution.copy_from_slice(&self.rhs);
-        apply(self.factored, &mut self.symmetric, &mut self.unsymmetric, &mut self.solution)?;
+        self.factors.solve(self.factored, &mut self.solution)?;
         self.unload(rhs)
     }
 
@@ -189,8 +182,8 @@ impl LinearSolver {
 
     /// Solves for the right-hand sides, with refinement.
     fn refine(&mut self) -> Result<SolveReport, LinearError> {
-        let Self { matrix, symmetric, unsymmetric, factored, rhs, solution, residual } = self;
-        matrix.system().refine(rhs, solution, residual, |x| apply(*factored, symmetric, unsymmetric, x))
+        let Self { matrix, factors, factored, rhs, solution, residual } = self;
+        matrix.system().refine(rhs, solution, residual, |x| factors.solve(*factored, x))
     }
 
     /// Replaces a right-hand side `b` by the residual `b - A x` of any `x`, and says how large it is.
@@ -213,55 +206,75 @@ impl LinearSolver {
     }
 }
 
-/// Solves in place with whatever holds the factors, for the columns of `x` in elimination order.
-fn apply(
-    factored: Option<Method>,
-    symmetric: &mut Option<SymmetricFactor>,
-    unsymmetric: &mut Option<UnsymmetricFactor>,
-    x: &mut [f64],
-) -> Result<(), LinearError> {
-    match (factored, symmetric, unsymmetric) {
-        (Some(Method::Llt | Method::Lblt), Some(factor), _) => {
-            factor.solve(x);
-            Ok(())
+impl AllFactors {
+    /// Cholesky if it may and does succeed, else Bunch-Kaufman, else LU.
+    fn factor(&mut self, matrix: &ScaledMatrix, expected: Definiteness) -> Result<FactorReport, LinearError> {
+        if matrix.pattern().kind() == MatrixKind::Symmetric {
+            if expected == Definiteness::Positive && matrix.has_positive_diagonal() {
+                if let Some(report) = self.cholesky(matrix)? {
+                    return Ok(report);
+                }
+            }
+            if let Some(report) = self.bunch_kaufman(matrix)? {
+                return Ok(report);
+            }
         }
-        (Some(Method::Lu | Method::PivotingLu), _, Some(factor)) => factor.solve(x),
-        _ => Err(LinearError::NotFactored),
+        self.lu(matrix)
     }
-}
 
-/// Cholesky if it may and does succeed, else Bunch-Kaufman; `None` when neither can be trusted.
-fn factor_symmetric(
-    factor: &mut SymmetricFactor,
-    matrix: &ScaledMatrix,
-    expected: Definiteness,
-) -> Result<Option<FactorReport>, LinearError> {
-    let report = |method, pivots: Pivots| FactorReport {
-        method,
-        negative_pivots: Some(pivots.negative),
-        smallest_pivot: Some(pivots.smallest),
-    };
-    let attempt = expected == Definiteness::Positive && matrix.has_positive_diagonal();
-    if let Some(pivots) = attempt.then(|| factor.llt(matrix)).flatten() {
-        return match pivots.smallest >= SMALLEST_PIVOT {
-            true => Ok(Some(report(Method::Llt, pivots))),
-            false => Err(LinearError::Singular { equation: pivots.equation }),
+    /// Cholesky, or `None` when a pivot is not positive.
+    fn cholesky(&mut self, matrix: &ScaledMatrix) -> Result<Option<FactorReport>, LinearError> {
+        let Some(factor) = &mut self.definite else { return Ok(None) };
+        match factor.factor(matrix.values()) {
+            Err(Error::NotPositive { .. }) => Ok(None),
+            Err(error) => Err(error.into()),
+            Ok(pivots) if pivots.smallest < SMALLEST_PIVOT => {
+                let equation = factor.analysis().order()[pivots.turn] as usize;
+                Err(LinearError::Singular { equation })
+            }
+            Ok(pivots) => Ok(Some(FactorReport {
+                method: Method::Llt,
+                negative_pivots: Some(0),
+                smallest_pivot: Some(pivots.smallest),
+            })),
+        }
+    }
+
+    /// Bunch-Kaufman, or `None` when the pivots cannot be trusted.
+    fn bunch_kaufman(&mut self, matrix: &ScaledMatrix) -> Result<Option<FactorReport>, LinearError> {
+        let factor = match &mut self.indefinite {
+            Some(factor) => factor,
+            None => self.indefinite.insert(IndefiniteFactor::new(matrix.pattern())?),
         };
+        let pivots = factor.factor(matrix);
+        Ok((pivots.smallest >= SMALLEST_PIVOT).then_some(FactorReport {
+            method: Method::Lblt,
+            negative_pivots: Some(pivots.negative),
+            smallest_pivot: Some(pivots.smallest),
+        }))
     }
-    let pivots = factor.lblt(matrix);
-    Ok((pivots.smallest >= SMALLEST_PIVOT).then(|| report(Method::Lblt, pivots)))
-}
 
-/// LU, analysed when first needed.
-fn factor_unsymmetric(
-    factor: &mut Option<UnsymmetricFactor>,
-    matrix: &ScaledMatrix,
-) -> Result<FactorReport, LinearError> {
-    let factor = match factor {
-        Some(factor) => factor,
-        None => factor.insert(UnsymmetricFactor::new(matrix.pattern())?),
-    };
-    factor.factor(matrix)?;
-    let method = if factor.is_pivoted() { Method::PivotingLu } else { Method::Lu };
-    Ok(FactorReport { method, negative_pivots: None, smallest_pivot: None })
+    /// LU, of either kind.
+    fn lu(&mut self, matrix: &ScaledMatrix) -> Result<FactorReport, LinearError> {
+        let factor = match &mut self.unsymmetric {
+            Some(factor) => factor,
+            None => self.unsymmetric.insert(UnsymmetricFactor::new(matrix.pattern())?),
+        };
+        factor.factor(matrix)?;
+        let method = if factor.is_pivoted() { Method::PivotingLu } else { Method::Lu };
+        Ok(FactorReport { method, negative_pivots: None, smallest_pivot: None })
+    }
+
+    /// Solves in place with the factors of a method.
+    fn solve(&mut self, factored: Option<Method>, x: &mut [f64]) -> Result<(), LinearError> {
+        match (factored, self) {
+            (Some(Method::Llt), Self { definite: Some(factor), .. }) => factor.solve(x),
+            (Some(Method::Lblt), Self { indefinite: Some(factor), .. }) => factor.solve(x),
+            (Some(Method::Lu | Method::PivotingLu), Self { unsymmetric: Some(factor), .. }) => {
+                return factor.solve(x);
+            }
+            _ => return Err(LinearError::NotFactored),
+        }
+        Ok(())
+    }
 }

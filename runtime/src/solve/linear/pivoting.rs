@@ -52,7 +52,7 @@ impl PivotingFactor {
     /// Factors the matrix of a scaled system.
     ///
     /// # Errors
-    /// [`LinearError::Singular`] with the equation in elimination order; [`LinearError::TooLarge`].
+    /// [`LinearError::Singular`], [`LinearError::TooLarge`].
     pub fn factor(&mut self, system: System<'_>) -> Result<(), LinearError> {
         self.symbolic
             .factorize_numeric_lu(
@@ -97,7 +97,7 @@ impl PivotingFactor {
         })
     }
 
-    /// Solves in place for the columns of `x`, in elimination order, `size` numbers each.
+    /// Solves in place for the columns of `x`, as many numbers each as there are equations.
     ///
     /// # Errors
     /// [`LinearError::TooLarge`] when there is no memory for so many columns.

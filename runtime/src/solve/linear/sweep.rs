@@ -1,4 +1,4 @@
-//! Triangular solves with supernodal factors for eight right-hand sides at a time.
+//! Triangular solves with supernodal factors, ones on their diagonal, for eight right-hand sides at a time.
 //!
 //! The numbers of one equation lie side by side in a row, so that every entry of the factor, which
 //! is read from memory once, is multiplied with a whole row.
@@ -30,7 +30,7 @@ struct Supernode {
     values: usize,
 }
 
-/// A triangular factor `L` with the structure of some supernodes.
+/// A triangular factor `L` with the structure of some supernodes; its diagonal is one, whatever is stored there.
 #[derive(Clone, Copy)]
 pub struct Factor<'a> {
     /// Structure.
@@ -39,8 +39,6 @@ pub struct Factor<'a> {
     pub values: &'a [f64],
     /// Equation of every column: pivoting may exchange those of one supernode.
     pub order: &'a [u32],
-    /// Whether the diagonal is understood to be one, with something else stored in its place.
-    pub unit: bool,
 }
 
 impl Supernodes {
@@ -95,7 +93,6 @@ struct Panel<'a, const WIDTH: usize> {
     /// Equations of the panel and of the columns after it in the supernode.
     own: &'a [u32],
     below: &'a [u32],
-    unit: bool,
 }
 
 #[inline(always)]
@@ -135,7 +132,6 @@ impl<'a, const WIDTH: usize> Panel<'a, WIDTH> {
             }),
             own: &factor.order[node.first + column..node.first + node.width],
             below: &factor.nodes.rows[node.rows.0..node.rows.1],
-            unit: factor.unit,
         }
     }
 
@@ -160,7 +156,6 @@ impl<'a, const WIDTH: usize> Panel<'a, WIDTH> {
             for p in 0..k {
                 y[k] = Lane::splat(s, -self.columns[p][k]).mul_add(y[p], y[k]);
             }
-            y[k] = self.divide(s, k, y[k]);
             y[k].store(&mut x[self.own[k] as usize], o);
         }
         for (offset, equation) in self.rows() {
@@ -186,16 +181,7 @@ impl<'a, const WIDTH: usize> Panel<'a, WIDTH> {
             for p in k + 1..WIDTH {
                 y[k] = Lane::splat(s, -self.columns[k][p]).mul_add(y[p], y[k]);
             }
-            y[k] = self.divide(s, k, y[k]);
             y[k].store(&mut x[self.own[k] as usize], o);
-        }
-    }
-
-    #[inline(always)]
-    fn divide<S: Simd>(&self, s: S, k: usize, value: Lane<S>) -> Lane<S> {
-        match self.unit {
-            true => value,
-            false => value / Lane::splat(s, self.columns[k][k]),
         }
     }
 }

@@ -72,7 +72,7 @@ impl UnsymmetricFactor {
     /// Factors a matrix.
     ///
     /// # Errors
-    /// [`LinearError::Singular`] with the equation in elimination order; [`LinearError::TooLarge`].
+    /// [`LinearError::Singular`], [`LinearError::TooLarge`].
     pub fn factor(&mut self, matrix: &ScaledMatrix) -> Result<(), LinearError> {
         self.load(matrix);
         let mut fronts = match self.fronts.take() {
@@ -149,7 +149,7 @@ impl UnsymmetricFactor {
         result
     }
 
-    /// Solves in place for the columns of `x`, in elimination order, `size` numbers each.
+    /// Solves in place for the columns of `x`, as many numbers each as there are equations.
     ///
     /// # Errors
     /// [`LinearError::TooLarge`] when there is no memory for so many columns; [`LinearError::NotFactored`].

@@ -1,7 +1,6 @@
-//! Factors of a symmetric matrix: Cholesky when it is positive definite, Bunch-Kaufman otherwise.
+//! Factors of a symmetric matrix that is not positive definite: supernodal Bunch-Kaufman.
 //!
-//! Both are supernodal and share one symbolic analysis after approximate minimum degree ordering.
-//! Bunch-Kaufman pivots only inside a supernode, so a matrix with zeros on its diagonal may defeat
+//! It pivots only inside a supernode, so a matrix with zeros on its diagonal may defeat
 //! it; the pivots tell, and the caller then turns to LU.
 
 use super::error::LinearError;
@@ -13,7 +12,7 @@ use crate::solve::sparse::SparsePattern;
 use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::supernodal::{
-    self, SupernodalIntranodeLbltRef, SupernodalLltRef, SymbolicSupernodalCholesky,
+    self, SupernodalIntranodeLbltRef, SymbolicSupernodalCholesky,
 };
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
@@ -36,7 +35,7 @@ pub struct Pivots {
     pub negative: usize,
     /// Smallest magnitude; not a number when the factorisation broke down.
     pub smallest: f64,
-    /// Equation, in elimination order, of the smallest pivot.
+    /// Equation of the smallest pivot.
     pub equation: usize,
 }
 
@@ -53,73 +52,45 @@ impl Pivots {
     }
 }
 
-/// Storage for the factors of symmetric matrices with one pattern.
-pub struct SymmetricFactor {
+/// Storage for the factors of indefinite matrices with one pattern.
+pub struct IndefiniteFactor {
     symbolic: SymbolicCholesky<u32>,
+    /// Pattern in elimination order.
     pattern: SymbolicSparseColMat<u32>,
+    /// Position among the original entries of every entry.
+    sources: Vec<u32>,
+    entries: Vec<f64>,
+    /// Original number of the equation to eliminate at each turn.
+    order: Vec<u32>,
     nodes: Supernodes,
     /// Position of every pivot among the values of the factor.
     diagonal: Vec<usize>,
     values: Vec<f64>,
     subdiagonal: Vec<f64>,
-    /// Exchanges inside supernodes; none after Cholesky.
+    /// Exchanges inside supernodes.
     forward: Vec<u32>,
     inverse: Vec<u32>,
     permuted: Vec<f64>,
     rows: Vec<Row>,
-    definite: bool,
     scratch: Scratch,
 }
 
-/// Elimination order of a symmetric pattern and the symbolic factorisation that goes with it.
-pub struct Analysis {
-    symbolic: SymbolicCholesky<u32>,
-}
-
-impl Analysis {
-    /// Orders a pattern and finds the structure of its factor.
+impl IndefiniteFactor {
+    /// Orders a symmetric pattern and allocates the factor.
     ///
     /// # Errors
     /// [`LinearError::NoEquations`], [`LinearError::TooLarge`].
     pub fn new(pattern: &SparsePattern) -> Result<Self, LinearError> {
-        if pattern.size() == 0 {
-            return Err(LinearError::NoEquations);
-        }
-        let symbolic = factorize_symbolic_cholesky(
-            symbolic_matrix(pattern).as_ref(),
-            Side::Lower,
-            SymmetricOrdering::Amd,
-            CholeskySymbolicParams { supernodal_flop_ratio_threshold: SUPERNODAL, ..Default::default() },
-        )
-        .map_err(|_| LinearError::TooLarge)?;
-        Ok(Self { symbolic })
-    }
-
-    /// Original number of the equation to eliminate at each turn.
-    pub fn order(&self) -> Vec<u32> {
-        match self.symbolic.perm() {
-            Some(order) => order.arrays().0.to_vec(),
-            None => (0..self.symbolic.nrows() as u32).collect(),
-        }
-    }
-}
-
-impl SymmetricFactor {
-    /// Allocates the factor of matrices whose reordered pattern is `pattern`.
-    ///
-    /// # Errors
-    /// [`LinearError::TooLarge`].
-    pub fn new(analysis: Analysis, pattern: &SparsePattern) -> Result<Self, LinearError> {
-        let symbolic = analysis.symbolic;
+        let symbolic = analyse(pattern)?;
         let size = symbolic.nrows();
+        let order = match symbolic.perm() {
+            Some(order) => order.arrays().0.to_vec(),
+            None => (0..size as u32).collect(),
+        };
+        let (pattern, sources) = pattern.reordered(&order);
         let structure = supernodes(&symbolic);
         let nodes = gather(structure);
         let scratch = Scratch::new(&[
-            supernodal::factorize_supernodal_numeric_llt_scratch::<u32, f64>(
-                structure,
-                Par::Seq,
-                Default::default(),
-            ),
             supernodal::factorize_supernodal_numeric_intranode_lblt_scratch::<u32, f64>(
                 structure,
                 Par::Seq,
@@ -132,57 +103,41 @@ impl SymmetricFactor {
             nodes,
             rows: Vec::new(),
             values: zeros(symbolic.len_val())?,
-            pattern: symbolic_matrix(pattern),
+            pattern: symbolic_matrix(&pattern),
+            entries: vec![0.0; sources.len()],
+            sources,
+            order,
             subdiagonal: vec![0.0; size],
             forward: vec![0; size],
             inverse: vec![0; size],
             permuted: vec![0.0; size],
-            definite: false,
             scratch,
             symbolic,
         })
     }
 
-    /// Cholesky `L L^T`, or `None` when a pivot is not positive.
-    pub fn llt(&mut self, matrix: &ScaledMatrix) -> Option<Pivots> {
-        self.definite = true;
-        self.forward.iter_mut().zip(0..).for_each(|(place, k)| *place = k);
-        supernodal::factorize_supernodal_numeric_llt(
-            &mut self.values,
-            SparseColMatRef::new(self.pattern.as_ref(), matrix.values()),
-            Default::default(),
-            supernodes(&self.symbolic),
-            Par::Seq,
-            self.scratch.stack(),
-            Default::default(),
-        )
-        .ok()?;
-        let mut pivots = Pivots::NONE;
-        for (equation, &position) in self.diagonal.iter().enumerate() {
-            pivots.add(equation, self.values[position].powi(2), 0);
-        }
-        Some(pivots)
-    }
-
     /// Bunch-Kaufman `L B L^T` with pivots of one and two rows.
-    pub fn lblt(&mut self, matrix: &ScaledMatrix) -> Pivots {
-        self.definite = false;
+    pub fn factor(&mut self, matrix: &ScaledMatrix) -> Pivots {
+        for (entry, &source) in self.entries.iter_mut().zip(&self.sources) {
+            *entry = matrix.values()[source as usize];
+        }
         self.subdiagonal.fill(0.0);
         supernodal::factorize_supernodal_numeric_intranode_lblt(
             &mut self.values,
             &mut self.subdiagonal,
             &mut self.forward,
             &mut self.inverse,
-            SparseColMatRef::new(self.pattern.as_ref(), matrix.values()),
+            SparseColMatRef::new(self.pattern.as_ref(), &self.entries),
             supernodes(&self.symbolic),
             Par::Seq,
             self.scratch.stack(),
             Default::default(),
         );
-        self.block_pivots()
+        let pivots = self.block_pivots();
+        Pivots { equation: self.order[pivots.equation] as usize, ..pivots }
     }
 
-    /// Signs and sizes of the one- and two-row pivots of Bunch-Kaufman.
+    /// Signs and sizes of the one- and two-row pivots, with equations in elimination order.
     fn block_pivots(&self) -> Pivots {
         let mut pivots = Pivots::NONE;
         let mut k = 0;
@@ -204,7 +159,7 @@ impl SymmetricFactor {
         pivots
     }
 
-    /// Solves in place for the columns of `x`, in elimination order, `size` numbers each.
+    /// Solves in place for the columns of `x`, as many numbers each as there are equations.
     pub fn solve(&mut self, x: &mut [f64]) {
         for columns in x.chunks_mut(BATCH * self.diagonal.len()) {
             if columns.len() < FEW * self.diagonal.len() {
@@ -219,19 +174,21 @@ impl SymmetricFactor {
     fn solve_one(&mut self, x: &mut [f64]) {
         let size = self.diagonal.len();
         let structure = supernodes(&self.symbolic);
-        let stack = self.scratch.stack();
-        if self.definite {
-            let factor = SupernodalLltRef::new(structure, &self.values);
-            let unknowns = MatMut::from_column_major_slice_mut(x, size, 1);
-            factor.solve_in_place_with_conj(Conj::No, unknowns, Par::Seq, stack);
-        } else {
-            let pivoting = PermRef::new_checked(&self.forward, &self.inverse, size);
-            let factor =
-                SupernodalIntranodeLbltRef::new(structure, &self.values, &self.subdiagonal, pivoting);
-            permute(x, &self.forward, &mut self.permuted);
-            let unknowns = MatMut::from_column_major_slice_mut(x, size, 1);
-            factor.solve_in_place_no_numeric_permute_with_conj(Conj::No, unknowns, Par::Seq, stack);
-            permute(x, &self.inverse, &mut self.permuted);
+        let pivoting = PermRef::new_checked(&self.forward, &self.inverse, size);
+        let factor = SupernodalIntranodeLbltRef::new(structure, &self.values, &self.subdiagonal, pivoting);
+        // into elimination order and that of the pivots in one go
+        for (value, &turn) in self.permuted.iter_mut().zip(&self.forward) {
+            *value = x[self.order[turn as usize] as usize];
+        }
+        let unknowns = MatMut::from_column_major_slice_mut(&mut self.permuted, size, 1);
+        factor.solve_in_place_no_numeric_permute_with_conj(
+            Conj::No,
+            unknowns,
+            Par::Seq,
+            self.scratch.stack(),
+        );
+        for (value, &turn) in self.permuted.iter().zip(&self.forward) {
+            x[self.order[turn as usize] as usize] = *value;
         }
     }
 
@@ -239,19 +196,17 @@ impl SymmetricFactor {
     fn solve_batch(&mut self, x: &mut [f64]) {
         let size = self.diagonal.len();
         self.rows.resize(size, [0.0; BATCH]);
-        for (k, row) in self.rows.iter_mut().enumerate() {
-            let values = x[k..].iter().step_by(size);
+        for (row, &equation) in self.rows.iter_mut().zip(&self.order) {
+            let values = x[equation as usize..].iter().step_by(size);
             row.iter_mut().zip(values).for_each(|(number, value)| *number = *value);
         }
         let (nodes, values, order) = (&self.nodes, &self.values, &self.forward);
-        let factor = Factor { nodes, values, order, unit: !self.definite };
+        let factor = Factor { nodes, values, order };
         factor.solve(&mut self.rows);
-        if !self.definite {
-            solve_blocks(values, &self.diagonal, &self.subdiagonal, order, &mut self.rows);
-        }
+        solve_blocks(values, &self.diagonal, &self.subdiagonal, order, &mut self.rows);
         factor.solve_transposed(&mut self.rows);
-        for (k, row) in self.rows.iter().enumerate() {
-            let values = x[k..].iter_mut().step_by(size);
+        for (row, &equation) in self.rows.iter().zip(&self.order) {
+            let values = x[equation as usize..].iter_mut().step_by(size);
             values.zip(row).for_each(|(value, number)| *value = *number);
         }
     }
@@ -281,12 +236,18 @@ fn solve_blocks(values: &[f64], diagonal: &[usize], subdiagonal: &[f64], order: 
     }
 }
 
-/// `x[k] = x[order[k]]`.
-fn permute(x: &mut [f64], order: &[u32], work: &mut [f64]) {
-    work.copy_from_slice(x);
-    for (value, &source) in x.iter_mut().zip(order) {
-        *value = work[source as usize];
+/// Approximate minimum degree order and the structure of the factor that goes with it.
+fn analyse(pattern: &SparsePattern) -> Result<SymbolicCholesky<u32>, LinearError> {
+    if pattern.size() == 0 {
+        return Err(LinearError::NoEquations);
     }
+    factorize_symbolic_cholesky(
+        symbolic_matrix(pattern).as_ref(),
+        Side::Lower,
+        SymmetricOrdering::Amd,
+        CholeskySymbolicParams { supernodal_flop_ratio_threshold: SUPERNODAL, ..Default::default() },
+    )
+    .map_err(|_| LinearError::TooLarge)
 }
 
 /// The structure of the factor.

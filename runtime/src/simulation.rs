@@ -42,7 +42,7 @@ impl Simulation {
         let system = System::new(program, parameters, mesh)?;
         let frames = program.frames.iter().map(|f| FrameSampler::new(f, &system.mesh));
         let frames = frames.collect::<Result<_, _>>()?;
-        let discretised = Discretised { system, frames, definite: None };
+        let discretised = Discretised { system, frames };
         Ok(Self { discretised, record: RunRecord::new(program.events) })
     }
 
@@ -63,7 +63,6 @@ impl Simulation {
         let settings = Solve { time: settings.time.map(|_| self.span(until)), ..settings };
         let Program { events, tables, frames, .. } = program;
         observer.begin(&self.discretised.system.mesh)?;
-        self.discretised.definite = None;
         let y = self.discretised.system.start()?;
         self.record = run(&mut self.discretised, Plan { settings, events, tables, frames }, y, observer)?;
         match self.record.end() {
@@ -95,8 +94,6 @@ fn mesh_error(error: MeshError) -> Error {
 struct Discretised {
     system: System,
     frames: Vec<FrameSampler>,
-    /// Negative pivots of a stable tangent: those of the first stage solved, none unless the model is a saddle point problem.
-    definite: Option<usize>,
 }
 
 impl ImplicitSystem for Discretised {
@@ -119,10 +116,9 @@ impl ImplicitSystem for Discretised {
         } else {
             self.system.solve_instant(&problem, y)?
         };
-        let stable = *self.definite.get_or_insert(report.negative_pivots);
-        if report.negative_pivots > stable {
+        if report.unstable_modes > 0 {
             return Err(SolveError {
-                cause: Cause::Unstable(report.negative_pivots - stable),
+                cause: Cause::Unstable(report.unstable_modes),
                 time: stage.time,
                 step: 0.0,
                 iterations: report.iterations,

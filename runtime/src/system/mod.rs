@@ -83,6 +83,8 @@ pub struct System {
     cell_size: f64,
     /// The last factorisation met negative pivots: the next one starts with the indefinite method.
     indefinite: bool,
+    /// Negative pivots of a stable tangent: those of the first stage solved, none unless the model is a saddle point problem.
+    stable_pivots: Option<usize>,
     /// Scalar fields whose level nothing fixes; `None` before the first start.
     levels: Option<Vec<Level>>,
     /// What a stationary solution has reached on its way, while it is on one.
@@ -140,6 +142,7 @@ impl System {
             factored: None,
             cell_size,
             indefinite: false,
+            stable_pivots: None,
             levels: None,
             ramp: None,
         };

@@ -14,6 +14,10 @@ const DECREASE: f64 = 0.9;
 
 /// Factors are kept for a further step while each step leaves less than this part of the residual.
 const CONTRACTION: f64 = 0.05;
+/// A stage goes on beyond its iterations while each leaves less than this part of the residual.
+const CONVERGING: f64 = 0.1;
+/// How much stiffer the rates are made where the tangent has unstable modes, and how often at most.
+const DAMPING: (f64, usize) = (4.0, 4);
 
 /// One implicit stage: find y with F(t, y, alpha (y - base)) = 0.
 #[derive(Clone, Copy, Debug)]
@@ -42,8 +46,8 @@ pub struct NewtonReport {
     pub iterations: usize,
     /// Relative residual at the end.
     pub residual: f64,
-    /// Negative pivots of the last tangent: 0 on a stable branch.
-    pub negative_pivots: usize,
+    /// Unstable modes of the last tangent: its negative pivots beyond those of the first stage solved (which a saddle point problem has).
+    pub unstable_modes: usize,
 }
 
 /// A point on the way: unknowns, rates and residual that belong together.
@@ -68,30 +72,33 @@ struct Progress {
     scale: f64,
     /// The last step made the residual so much smaller that the same factors will do again.
     keep_factors: bool,
+    /// The last new tangent made the residual much smaller.
+    converging: bool,
+    /// Negative pivots of the last exact tangent.
+    negative_pivots: usize,
     report: NewtonReport,
 }
 
 impl System {
-    /// Solves one stage; `y` is the prediction on entry and the solution on return.
+    /// Solves one stage; `y` is the prediction on entry and the solution on return. Where nothing can be evaluated at the prediction, the base of
+    /// the rates is the start.
     pub fn solve_stage(
         &mut self,
         problem: &StageProblem<'_>,
         y: &mut [f64],
     ) -> Result<NewtonReport, SolveError> {
-        let mut start = y.to_vec();
-        self.apply_holds(problem.time, &mut start);
-        let current = match self.evaluate(problem, start) {
+        let predicted = self.evaluate_held(problem, y);
+        let current = match predicted.or_else(|_| self.evaluate_held(problem, problem.base)) {
             Ok(iterate) => iterate,
             Err(cause) => return Err(self.failure(problem, cause, &NewtonReport::default(), None)),
         };
         let mut progress = self.resume(problem, current);
-        while progress.report.iterations < self.settings.newton_iterations {
+        while progress.report.iterations < self.settings.newton_iterations || progress.converging {
             match self.iterate(problem, &mut progress) {
                 Ok(false) => {}
                 Ok(true) => {
                     y.copy_from_slice(&progress.current.y);
-                    self.remember(problem, &progress);
-                    return Ok(progress.report);
+                    return Ok(self.remember(problem, &progress));
                 }
                 Err(cause) => {
                     return Err(self.failure(problem, cause, &progress.report, Some(&progress.current)));
@@ -108,20 +115,24 @@ impl System {
             current,
             scale: usable.map_or(0.0, |f| f.scale),
             keep_factors: usable.is_some(),
-            report: NewtonReport {
-                negative_pivots: usable.map_or(0, |f| f.negative_pivots),
-                ..NewtonReport::default()
-            },
+            converging: false,
+            negative_pivots: usable.map_or(0, |f| f.negative_pivots),
+            report: NewtonReport::default(),
         }
     }
 
-    fn remember(&mut self, problem: &StageProblem<'_>, progress: &Progress) {
-        let NewtonReport { iterations, negative_pivots, .. } = progress.report;
-        self.factored = (iterations <= 1).then_some(Factored {
-            alpha: problem.alpha,
-            scale: progress.scale,
-            negative_pivots,
-        });
+    /// Keeps what the next stages need to know of a solved one; its report.
+    fn remember(&mut self, problem: &StageProblem<'_>, progress: &Progress) -> NewtonReport {
+        let &Progress { negative_pivots, scale, report, .. } = progress;
+        self.factored =
+            (report.iterations <= 1).then_some(Factored { alpha: problem.alpha, scale, negative_pivots });
+        self.stable_pivots.get_or_insert(negative_pivots);
+        NewtonReport { unstable_modes: self.unstable_modes(negative_pivots), ..report }
+    }
+
+    /// Negative pivots that the first stage solved did not have. Until there is one, none is taken for unstable.
+    fn unstable_modes(&self, negative_pivots: usize) -> usize {
+        self.stable_pivots.map_or(0, |stable| negative_pivots.saturating_sub(stable))
     }
 
     /// Steps with the present factors as long as they do, then one with a new tangent; true when converged.
@@ -131,12 +142,14 @@ impl System {
                 return Ok(true);
             }
         }
-        let (balance, direction) = self.direction(problem, &progress.current, &mut progress.report)?;
+        let (balance, direction) = self.direction(problem, progress)?;
         progress.report.iterations += 1;
         let before = norm(&progress.current.residual);
         let slope = dot(&direction, &balance.residual).abs();
         progress.current = self.search(problem, &progress.current, &direction, slope)?;
-        progress.keep_factors = norm(&progress.current.residual) < CONTRACTION * before;
+        let contraction = norm(&progress.current.residual) / before;
+        progress.keep_factors = contraction < CONTRACTION;
+        progress.converging = contraction < CONVERGING;
         let Iterate { y, rates, .. } = &progress.current;
         progress.scale = self.force_scale(y, rates, problem.alpha);
         Ok(self.converged(progress))
@@ -171,24 +184,47 @@ impl System {
     fn direction(
         &mut self,
         problem: &StageProblem<'_>,
-        current: &Iterate,
-        report: &mut NewtonReport,
+        progress: &mut Progress,
     ) -> Result<(Balance, Vec<f64>), Cause> {
-        let mut balance = self.linearise(&current.y, &current.rates, problem.alpha, Curvature::Kept);
+        let (alpha, current) = (problem.alpha, &progress.current);
+        let mut balance = self.linearise(&current.y, &current.rates, alpha, Curvature::Kept);
         if self.pairs.iter().any(|pair| !pair.covered()) {
             self.rebuild_pattern(&current.y).map_err(|e| Cause::Singular(e.to_string()))?;
-            balance = self.linearise(&current.y, &current.rates, problem.alpha, Curvature::Kept);
+            balance = self.linearise(&current.y, &current.rates, alpha, Curvature::Kept);
         }
-        report.negative_pivots = self.factor(&balance)?;
-        if report.negative_pivots > 0 && !self.pairs.is_empty() {
-            balance = self.linearise(&current.y, &current.rates, problem.alpha, Curvature::Dropped);
-            self.factor(&balance)?;
+        progress.negative_pivots = self.factor(&balance)?;
+        if self.unstable_modes(progress.negative_pivots) > 0 {
+            balance = self.stabilise(problem, current)?.unwrap_or(balance);
         }
         let direction = self.solve_for(&balance.residual)?;
         Ok((balance, direction))
     }
 
-    /// Factors the linearised balance; its number of negative pivots.
+    /// Factors a tangent without unstable modes where the exact one has some: that of a smaller time step, in which rates resist more, or else that
+    /// without the curvature of the contact. None, and the exact tangent's factors, where there is neither.
+    fn stabilise(
+        &mut self,
+        problem: &StageProblem<'_>,
+        current: &Iterate,
+    ) -> Result<Option<Balance>, Cause> {
+        let (factor, times) = if problem.alpha > 0.0 { DAMPING } else { (1.0, 0) };
+        let stiffer = (1..=times).map(|k| (problem.alpha * factor.powi(k as i32), Curvature::Kept));
+        let flat = (!self.pairs.is_empty()).then_some((problem.alpha, Curvature::Dropped));
+        for (alpha, curvature) in stiffer.chain(flat) {
+            let balance = self.linearise(&current.y, &current.rates, alpha, curvature);
+            let negative_pivots = self.factor(&balance)?;
+            if self.unstable_modes(negative_pivots) == 0 || curvature == Curvature::Dropped {
+                return Ok(Some(balance));
+            }
+        }
+        if times > 0 {
+            let exact = self.linearise(&current.y, &current.rates, problem.alpha, Curvature::Kept);
+            self.factor(&exact)?;
+        }
+        Ok(None)
+    }
+
+    /// Factors the linearised balance; the number of its negative pivots.
     fn factor(&mut self, balance: &Balance) -> Result<usize, Cause> {
         let entries = self.pattern.entries();
         let expected = if self.indefinite { Definiteness::Indefinite } else { Definiteness::Positive };
@@ -218,7 +254,14 @@ impl System {
         moved
     }
 
-    /// Goes along the direction as far as |du . R| falls.
+    /// What a line search makes small: |du . R|. A symmetric tangent is that of an energy with the slope du . R, so that as long as it is negative the
+    /// energy falls, and only going past its minimum is going too far.
+    fn work(&self, direction: &[f64], trial: &Iterate) -> f64 {
+        let work = dot(direction, &trial.residual);
+        if self.is_symmetric() { work } else { work.abs() }
+    }
+
+    /// Goes along the direction as far as the [work](Self::work) allows.
     fn search(
         &mut self,
         problem: &StageProblem<'_>,
@@ -232,7 +275,7 @@ impl System {
         for _ in 0..=HALVINGS {
             match self.evaluate(problem, self.along(&current.y, direction, length)) {
                 Ok(trial) => {
-                    let work = dot(direction, &trial.residual).abs();
+                    let work = self.work(direction, &trial);
                     let smaller = norm(&trial.residual) <= norm(&current.residual) * 1e-3;
                     if work <= DECREASE * slope || smaller {
                         return Ok(trial);
@@ -246,6 +289,13 @@ impl System {
             length *= 0.5;
         }
         best.map(|(_, iterate)| iterate).ok_or(cause)
+    }
+
+    /// The iterate at y with the held values of the stage.
+    fn evaluate_held(&mut self, problem: &StageProblem<'_>, y: &[f64]) -> Result<Iterate, Cause> {
+        let mut y = y.to_vec();
+        self.apply_holds(problem.time, &mut y);
+        self.evaluate(problem, y)
     }
 
     /// Settles the scalars and assembles the residual at y.

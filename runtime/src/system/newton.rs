@@ -202,11 +202,7 @@ impl System {
 
     /// Factors a tangent without unstable modes where the exact one has some: that of a smaller time step, in which rates resist more, or else that
     /// without the curvature of the contact. None, and the exact tangent's factors, where there is neither.
-    fn stabilise(
-        &mut self,
-        problem: &StageProblem<'_>,
-        current: &Iterate,
-    ) -> Result<Option<Balance>, Cause> {
+    fn stabilise(&mut self, problem: &StageProblem<'_>, current: &Iterate) -> Result<Option<Balance>, Cause> {
         let (factor, times) = if problem.alpha > 0.0 { DAMPING } else { (1.0, 0) };
         let stiffer = (1..=times).map(|k| (problem.alpha * factor.powi(k as i32), Curvature::Kept));
         let flat = (!self.pairs.is_empty()).then_some((problem.alpha, Curvature::Dropped));

@@ -1,8 +1,10 @@
 //! P2 and P4: whole nonlinear solves in four load steps, on the peers' meshes.
 
+use crate::clock::median;
 use ansatz::generated::Program;
 use ansatz::mesh::{Mesh, structured_rectangle};
 use ansatz::observer::{Observer, Step};
+use ansatz::system::{StageProblem, System};
 use ansatz::{Error, Simulation};
 
 /// A solve that ran.
@@ -17,6 +19,8 @@ pub struct Solved {
 
 /// A problem ready to be solved.
 pub struct Solve {
+    program: &'static Program,
+    values: Vec<f64>,
     simulation: Simulation,
 }
 
@@ -43,7 +47,8 @@ impl Solve {
     }
 
     fn new(program: &'static Program, values: &[f64], mesh: Mesh) -> Result<Self, Error> {
-        Ok(Self { simulation: Simulation::on_mesh(program, values, mesh)? })
+        let simulation = Simulation::on_mesh(program, values, mesh)?;
+        Ok(Self { program, values: values.to_vec(), simulation })
     }
 
     /// Unknowns, held ones included.
@@ -65,6 +70,19 @@ impl Solve {
         self.simulation.run(&mut notes, None)?;
         let total = self.simulation.record().statistics().iterations;
         Ok(Solved { results: notes.row, iterations: notes.iterations, total })
+    }
+
+    /// Time of one assembly of residual and tangent \[s\], measured apart from the solve.
+    ///
+    /// # Errors
+    /// None with the shipped models.
+    pub fn assembly(&self) -> Result<f64, Error> {
+        let mesh = self.simulation.system().mesh.clone();
+        let mut system = System::new(self.program, &self.values, mesh)?;
+        let y = vec![0.0; system.unknowns.length];
+        let problem = StageProblem { time: 0.0, alpha: 0.0, base: &y };
+        let mut probe = system.probe(&problem, &y).map_err(|cause| Error::Model(cause.to_string()))?;
+        Ok(median(|| probe.assemble()))
     }
 }
 

@@ -8,7 +8,7 @@
 pub use ansatz_geometry::{Geometry, GeometryError, LoopPart, PathBuilder, Region, Turn};
 
 pub use crate::error::Error;
-pub use crate::lane::{BATCH, Lane, Simd};
+pub use crate::lane::{BATCH, Lane, Row, Simd, rows, rows_mut};
 pub use crate::mesh::{MeshSizing, Place, SizeRule};
 pub use crate::simulation::Simulation;
 pub use crate::simulator::main;
@@ -191,23 +191,25 @@ pub struct Use {
     pub field: usize,
 }
 
-/// A batch of [`BATCH`] elements of one region, structure of arrays: one row of 8 per scalar quantity. A batch with fewer elements repeats its
-/// last one; the runtime ignores those lanes.
+/// A batch of [`BATCH`] elements of one region, structure of arrays: one row per scalar quantity. A batch with fewer elements repeats
+/// its last one; the runtime ignores those lanes.
 pub struct Batch<'a> {
     /// Position of the region in the integral's domain (0 for edges).
     pub region: usize,
     /// Reference coordinates of the geometry nodes: x0, y0, x1, y1, .. (6 nodes of a triangle, 3 of an edge).
-    pub nodes: &'a [[f64; 8]],
+    pub nodes: &'a [Row],
+    /// All elements are affine: middle nodes lie in the middle of straight edges.
+    pub straight: bool,
     /// Local unknowns.
-    pub values: &'a [[f64; 8]],
-    /// Their time derivatives.
-    pub rates: &'a [[f64; 8]],
+    pub values: &'a [Row],
+    /// Their time derivatives, if the integral reads them.
+    pub rates: &'a [Row],
     /// d rate / d value of the time integrator [1/time].
     pub alpha: f64,
 }
 
 /// An emitted element kernel: adds nothing, overwrites `out`.
-pub type Kernel = fn(batch: &Batch<'_>, g: &[f64], out: &mut [[f64; 8]]);
+pub type Kernel = fn(batch: &Batch<'_>, g: &[f64], out: &mut [Row]);
 
 /// An integral over cells or edges, as kernels per element. With n local unknowns:
 /// `value` writes 1 row; `residual` n rows, the variation; `tangent` the n rows of the residual followed by the tangent
@@ -223,6 +225,8 @@ pub struct Integral {
     pub domain: Domain,
     /// Fields whose unknowns it uses.
     pub uses: &'static [Use],
+    /// Its kernels read rates.
+    pub rates: bool,
     /// The tangent is symmetric.
     pub symmetric: bool,
     /// The integral itself (energies and functionals).

@@ -1,16 +1,67 @@
 //! SIMD lanes for generated element kernels.
 //!
-//! A kernel treats [`BATCH`] elements at once in structure-of-arrays layout: each scalar quantity is a row
-//! `[f64; BATCH]`, one number per element. A [`Lane`] holds as many consecutive numbers of a row as fit one register of
+//! A kernel treats [`BATCH`] elements at once in structure-of-arrays layout: each scalar quantity is a [`Row`], one
+//! number per element. A [`Lane`] holds as many consecutive numbers of a row as fit one register of
 //! the instruction set `S`; [`vectorize!`](crate::vectorize) picks the instruction set at run time and walks a kernel
 //! over the registers of the batch, so that a kernel is written once, for "one register of elements at offset `o`".
 
 use pulp::bytemuck;
 pub use pulp::{Arch, Simd, WithSimd};
-use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, AddAssign, Deref, DerefMut, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// Number of elements that one kernel call treats.
 pub const BATCH: usize = 8;
+
+/// One number for each element of a batch, on one cache line.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(align(64))]
+pub struct Row(pub [f64; BATCH]);
+
+impl Row {
+    /// A row of zeros.
+    pub const ZERO: Self = Self([0.0; BATCH]);
+
+    /// The row with `number(lane)` in each lane.
+    #[inline(always)]
+    pub fn from_fn(number: impl FnMut(usize) -> f64) -> Self {
+        Self(std::array::from_fn(number))
+    }
+}
+
+impl Deref for Row {
+    type Target = [f64; BATCH];
+    #[inline(always)]
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
+}
+
+impl DerefMut for Row {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.0
+    }
+}
+
+/// The first `N` of some rows, where a kernel knows how many the runtime hands it.
+///
+/// # Panics
+/// If there are fewer.
+#[inline(always)]
+pub fn rows<const N: usize>(rows: &[Row]) -> &[Row; N] {
+    // Which rows an integral reads and writes follows from its uses, for the kernel as for the runtime.
+    rows.first_chunk().expect("as many rows as the integral has local unknowns")
+}
+
+/// The first `N` of some rows, to be written.
+///
+/// # Panics
+/// If there are fewer.
+#[inline(always)]
+pub fn rows_mut<const N: usize>(rows: &mut [Row]) -> &mut [Row; N] {
+    // As for `rows`.
+    rows.first_chunk_mut().expect("as many rows as the kernel writes")
+}
 
 /// Calls a kernel for all registers of one batch, with the best instruction set of the machine.
 ///

@@ -1,6 +1,6 @@
 //! Random but valid data for the functions of a compiled model: globals, batches of elements.
 
-use ansatz::generated::{BATCH, Batch, Domain, Integral, Program, Space};
+use ansatz::generated::{Batch, Domain, Integral, Program, Row, Space};
 
 /// Numbers that look random and are the same in every run (a linear congruential generator).
 pub struct Random(u64);
@@ -48,11 +48,13 @@ pub struct Elements {
     /// Position of the region in the integral's domain.
     pub region: usize,
     /// See [`Batch::nodes`].
-    pub nodes: Vec<[f64; BATCH]>,
+    pub nodes: Vec<Row>,
+    /// See [`Batch::straight`].
+    pub straight: bool,
     /// See [`Batch::values`].
-    pub values: Vec<[f64; BATCH]>,
+    pub values: Vec<Row>,
     /// See [`Batch::rates`].
-    pub rates: Vec<[f64; BATCH]>,
+    pub rates: Vec<Row>,
     /// See [`Batch::alpha`].
     pub alpha: f64,
 }
@@ -64,14 +66,12 @@ impl Elements {
         let regions = if let Domain::Cells(names) = integral.domain { names.len() } else { 1 };
         let corners: &[[f64; 2]] =
             if cells { &[[1.0, 0.0], [2.0, 0.2], [1.3, 1.1]] } else { &[[1.0, 0.0], [2.0, 0.3]] };
-        let mut nodes: Vec<[[f64; BATCH]; 2]> =
-            corners.iter().map(|c| c.map(|x| [(); BATCH].map(|()| x + 0.1 * random.signed()))).collect();
+        let mut nodes: Vec<[Row; 2]> =
+            corners.iter().map(|c| c.map(|x| Row::from_fn(|_| x + 0.1 * random.signed()))).collect();
         let edges: &[[usize; 2]] = if cells { &[[0, 1], [1, 2], [2, 0]] } else { &[[0, 1]] };
         for [a, b] in edges {
-            let middle =
-                |i: usize| std::array::from_fn(|lane| 0.5 * (nodes[*a][i][lane] + nodes[*b][i][lane]));
-            let bent =
-                [middle(0), middle(1)].map(|row: [f64; BATCH]| row.map(|x| x + 0.02 * random.signed()));
+            let middle = |i: usize| Row::from_fn(|lane| 0.5 * (nodes[*a][i][lane] + nodes[*b][i][lane]));
+            let bent = [middle(0), middle(1)].map(|row| Row(row.map(|x| x + 0.02 * random.signed())));
             nodes.push(bent);
         }
         let mut values = Vec::new();
@@ -85,17 +85,16 @@ impl Elements {
                 let mut start = vec![0.0; field.components];
                 (field.start)([node[0][0], node[1][0]], g, &mut start);
                 values.extend(
-                    start
-                        .iter()
-                        .map(|&x| [(); BATCH].map(|()| x + 0.05 * x.abs().max(1.0) * random.signed())),
+                    start.iter().map(|&x| Row::from_fn(|_| x + 0.05 * x.abs().max(1.0) * random.signed())),
                 );
             }
         }
-        let rates = values.iter().map(|row| row.map(|_| 0.3 * random.signed())).collect();
+        let rates = values.iter().map(|_| Row::from_fn(|_| 0.3 * random.signed())).collect();
         let region = (random.within(0.0, regions as f64) as usize).min(regions - 1);
         Self {
             region,
             nodes: nodes.into_iter().flatten().collect(),
+            straight: false,
             values,
             rates,
             alpha: random.within(0.5, 3.0),
@@ -107,10 +106,24 @@ impl Elements {
         Batch {
             region: self.region,
             nodes: &self.nodes,
+            straight: self.straight,
             values: &self.values,
             rates: &self.rates,
             alpha: self.alpha,
         }
+    }
+
+    /// The same with straight edges, said to be `straight` or not.
+    pub fn straightened(&self, straight: bool) -> Self {
+        let mut nodes = self.nodes.clone();
+        let corners = (nodes.len() / 2).div_ceil(2);
+        for edge in 0..nodes.len() / 2 - corners {
+            for axis in 0..2 {
+                let [a, b] = [edge, (edge + 1) % corners].map(|corner| nodes[2 * corner + axis]);
+                nodes[2 * (corners + edge) + axis] = Row::from_fn(|lane| 0.5 * (a[lane] + b[lane]));
+            }
+        }
+        Self { nodes, straight, values: self.values.clone(), rates: self.rates.clone(), ..*self }
     }
 
     /// The same with one local unknown moved by `by` in every lane, and its rate with it.

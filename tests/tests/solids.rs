@@ -1,6 +1,6 @@
 //! What must hold for any elastic solid, on unstructured meshes and from the law to the solution.
 
-use ansatz::generated::{BATCH, Integral, Kernel, Program};
+use ansatz::generated::{BATCH, Integral, Kernel, Program, Row};
 use ansatz_tests::models::{named_axis, patch_axi, patch_plane};
 use ansatz_tests::notes::Notes;
 use ansatz_tests::sample::{Elements, Random, globals};
@@ -27,7 +27,8 @@ fn a_uniform_deformation_of_the_boundary_goes_on_inside() {
 #[test]
 fn nothing_leaves_the_axis_whatever_path_leads_along_it() {
     let values = named_axis::Parameters::default().values();
-    let mut simulation = ansatz::Simulation::new(&named_axis::PROGRAM, &values).expect("the model can be built");
+    let mut simulation =
+        ansatz::Simulation::new(&named_axis::PROGRAM, &values).expect("the model can be built");
     let mut notes = Notes::default();
     simulation.run(&mut notes, None).expect("the run reaches its end");
     let (_, last) = notes.rows.last().expect("a row for every step");
@@ -46,8 +47,8 @@ fn energy(program: &'static Program) -> (&'static Integral, Kernel, Elements, Ve
     (integral, value, elements, g)
 }
 
-fn values(kernel: Kernel, elements: &Elements, g: &[f64], rows: usize) -> Vec<[f64; BATCH]> {
-    let mut out = vec![[0.0; BATCH]; rows];
+fn values(kernel: Kernel, elements: &Elements, g: &[f64], rows: usize) -> Vec<Row> {
+    let mut out = vec![Row::ZERO; rows];
     kernel(&elements.batch(), g, &mut out);
     out
 }
@@ -70,10 +71,12 @@ fn moved(elements: &Elements, by: impl Fn([f64; 2]) -> [f64; 2]) -> Elements {
 }
 
 #[track_caller]
-fn assert_same(a: &[[f64; BATCH]], b: &[[f64; BATCH]]) {
-    let scale = a.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+fn assert_same(a: &[Row], b: &[Row]) {
+    let numbers = |rows: &[Row]| -> Vec<f64> { rows.iter().flat_map(|row| row.0).collect() };
+    let (a, b) = (numbers(a), numbers(b));
+    let scale = a.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     assert!(scale > 1e-3, "the elements are strained");
-    let close = a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| (a - b).abs() <= 1e-12 * scale);
+    let close = a.iter().zip(&b).all(|(a, b)| (a - b).abs() <= 1e-12 * scale);
     assert!(close, "{a:?}\n{b:?}");
 }
 
@@ -85,9 +88,9 @@ fn a_turn_leaves_the_energy_and_turns_the_forces() {
     let turned = moved(&elements, |x| [turn(x)[0] - x[0] + 3.0, turn(x)[1] - x[1] - 1.0]);
     assert_same(&values(value, &elements, &g, 1), &values(value, &turned, &g, 1));
     let forces = values(integral.residual, &elements, &g, 12);
-    let expected: Vec<[f64; BATCH]> = forces
+    let expected: Vec<Row> = forces
         .chunks(2)
-        .flat_map(|f| [0, 1].map(|i| std::array::from_fn(|lane| turn([f[0][lane], f[1][lane]])[i])))
+        .flat_map(|f| [0, 1].map(|i| Row::from_fn(|lane| turn([f[0][lane], f[1][lane]])[i])))
         .collect();
     assert_same(&expected, &values(integral.residual, &turned, &g, 12));
 }

@@ -161,12 +161,13 @@ impl Emitter<'_, '_> {
                     let column = count(column);
                     quote!(at + #column)
                 };
-                let sum = of.iter().fold(quote!(tangent[#at]), |sum, (input, _, slope)| {
-                    let basis = self.basis(test, *input, node);
-                    quote!(#slope.mul_add(#basis, #sum))
-                });
+                let sum =
+                    of.iter().fold(quote!(Lane::load(s, &tangent[#at], o)), |sum, (input, _, slope)| {
+                        let basis = self.basis(test, *input, node);
+                        quote!(#slope.mul_add(#basis, #sum))
+                    });
                 if !of.is_empty() {
-                    sums.push(quote!(tangent[#at] = #sum;));
+                    sums.push(quote!(#sum.store(&mut tangent[#at], o);));
                 }
             }
             let (i, j) = (self.unknown(test, row, node), self.unknown(trial, 0, &ident("b")));

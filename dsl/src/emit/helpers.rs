@@ -87,7 +87,8 @@ fn pull_back() -> TokenStream {
             let mut gradients = [[Lane::splat(s, 0.0); 2]; N];
             for a in 0..N {
                 for i in 0..2 {
-                    gradients[a][i] = map[i][0] * Lane::splat(s, reference[a][0]) + map[i][1] * Lane::splat(s, reference[a][1]);
+                    let second = map[i][1] * Lane::splat(s, reference[a][1]);
+                    gradients[a][i] = map[i][0].mul_add(Lane::splat(s, reference[a][0]), second);
                 }
             }
             gradients

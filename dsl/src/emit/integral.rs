@@ -1,6 +1,5 @@
 //! Integrals and their kernels.
 
-use super::expression::number;
 use super::fields::domain;
 use super::layout::Slots;
 use super::tables::Tables;
@@ -73,13 +72,14 @@ impl Emitted {
                 ident("no_variation")
             }
         };
-        let symmetric = term.symmetric;
+        let (rates, symmetric) = (kernels.all().any(Kernel::reads_rates), term.symmetric);
         quote!(Integral {
             name: #name,
             place: #place,
             block: #block,
             domain: #domain,
             uses: &[#(#uses),*],
+            rates: #rates,
             symmetric: #symmetric,
             value: #value,
             residual: #residual,
@@ -93,11 +93,10 @@ impl Emitted {
         if !self.uses_no_variation {
             return TokenStream::new();
         }
-        let zero = number(0.0);
         quote! {
             /// The variation of an integral that depends on no unknown, or whose variation nobody asks for.
-            fn no_variation(_: &Batch<'_>, _: &[f64], out: &mut [[f64; BATCH]]) {
-                out.fill([#zero; BATCH]);
+            fn no_variation(_: &Batch<'_>, _: &[f64], out: &mut [Row]) {
+                out.fill(Row::ZERO);
             }
         }
     }

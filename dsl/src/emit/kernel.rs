@@ -24,16 +24,16 @@ pub fn kernel(
 }
 
 /// The call of a kernel for all registers as the formatter leaves it, since it does not look into macros, and as it should be.
-pub const INVOCATION_AS_PRINTED: &str = "vectorize!(
-            lanes(batch : & Batch < '_ >, g : & [f64], out : & mut [[f64; BATCH]])
-        );";
+pub const INVOCATION_AS_PRINTED: &str =
+    "vectorize!(lanes(batch : & Batch < '_ >, g : & [f64], out : & mut [Row]));";
 /// See [`INVOCATION_AS_PRINTED`].
-pub const INVOCATION: &str = "vectorize!(lanes(batch: &Batch<'_>, g: &[f64], out: &mut [[f64; BATCH]]));";
+pub const INVOCATION: &str = "vectorize!(lanes(batch: &Batch<'_>, g: &[f64], out: &mut [Row]));";
 
 /// Variables of every kernel.
-const RESERVED: [&str; 20] = [
+const RESERVED: [&str; 26] = [
     "s", "o", "batch", "g", "out", "q", "a", "b", "weight", "x", "point", "map", "residual", "tangent",
-    "columns", "total", "node", "v", "zero", "basis",
+    "columns", "total", "node", "v", "zero", "basis", "nodes", "values", "rates", "straight", "measure",
+    "at",
 ];
 
 pub(super) struct Emitter<'a, 'm> {
@@ -48,25 +48,28 @@ impl Emitter<'_, '_> {
         let name = ident(&self.kernel.name);
         let doc = format!(" {place}");
         let prelude = self.prelude();
-        let coordinates = self.load_geometry();
+        let (inputs, geometry) = (self.load_unknowns(), self.load_geometry(tables));
         let (declare, finish) = (self.declare(), self.finish());
         let point = self.point(tables);
         let points = count(self.kernel.rule.weights.len());
+        let globals = self.symbols().into_iter().any(|kind| self.is_global(kind));
+        let g = if globals { quote!(g) } else { quote!(_) };
         quote! {
             #[doc = #doc]
-            fn #name(batch: &Batch<'_>, g: &[f64], out: &mut [[f64; BATCH]]) {
+            fn #name(batch: &Batch<'_>, g: &[f64], out: &mut [Row]) {
                 #[inline(always)]
-                fn lanes<S: Simd>(s: S, o: usize, batch: &Batch<'_>, g: &[f64], out: &mut [[f64; BATCH]]) {
+                fn lanes<S: Simd>(s: S, o: usize, batch: &Batch<'_>, #g: &[f64], out: &mut [Row]) {
                     let zero = Lane::splat(s, 0.0);
                     #prelude
-                    #coordinates
+                    #inputs
+                    #geometry
                     #declare
                     for q in 0..#points {
                         #point
                     }
                     #finish
                 }
-                vectorize!(lanes(batch: &Batch<'_>, g: &[f64], out: &mut [[f64; BATCH]]));
+                vectorize!(lanes(batch: &Batch<'_>, g: &[f64], out: &mut [Row]));
             }
         }
     }
@@ -77,12 +80,7 @@ impl Emitter<'_, '_> {
         let roots = kernel.job.roots();
         let mut code = Vec::new();
         let mut spread = Vec::new();
-        let mut kinds: Vec<SymbolKind> = symbols_of(&self.lowering.pool, &roots)
-            .into_iter()
-            .map(|symbol| self.lowering.symbols.kind(symbol))
-            .collect();
-        kinds.sort_unstable();
-        for kind in kinds {
+        for kind in self.symbols() {
             if let Some(source) = self.global(kind) {
                 let name = self.names.symbol(self.lowering, kind);
                 code.push(quote!(let #name = #source;));
@@ -100,6 +98,28 @@ impl Emitter<'_, '_> {
         quote!(#(#code)* #(let #spread = Lane::splat(s, #spread);)*)
     }
 
+    /// What the kernel's scalars depend on, in order.
+    fn symbols(&self) -> Vec<SymbolKind> {
+        let symbols = symbols_of(&self.lowering.pool, &self.kernel.job.roots());
+        let mut kinds: Vec<SymbolKind> =
+            symbols.into_iter().map(|symbol| self.lowering.symbols.kind(symbol)).collect();
+        kinds.sort_unstable();
+        kinds
+    }
+
+    /// Whether a symbol is read from the globals.
+    fn is_global(&self, kind: SymbolKind) -> bool {
+        !matches!(
+            kind,
+            SymbolKind::Coordinate(_)
+                | SymbolKind::Field(_)
+                | SymbolKind::FieldRate(_)
+                | SymbolKind::Weight
+                | SymbolKind::Alpha
+        )
+    }
+
+    /// Where a symbol that is the same at all points is read.
     fn global(&self, kind: SymbolKind) -> Option<TokenStream> {
         match kind {
             SymbolKind::Alpha => Some(quote!(batch.alpha)),
@@ -107,25 +127,43 @@ impl Emitter<'_, '_> {
                 let first = count(self.slots.table(table));
                 Some(quote!(g[#first + batch.region]))
             }
-            SymbolKind::Coordinate(_)
-            | SymbolKind::Field(_)
-            | SymbolKind::FieldRate(_)
-            | SymbolKind::Weight => None,
-            _ => {
+            _ if self.is_global(kind) => {
                 let slot = count(self.slots.slot(kind));
                 Some(quote!(g[#slot]))
             }
+            _ => None,
         }
     }
 
-    fn load_geometry(&self) -> TokenStream {
-        let nodes = count(self.kernel.geometry.nodes().len());
+    /// The rows of the local unknowns and their rates that the kernel reads.
+    fn load_unknowns(&self) -> TokenStream {
+        let n = count(self.kernel.unknowns());
+        let reads = |rate: bool| self.kernel.inputs.iter().any(|input| input.rate == rate);
+        let values = reads(false).then(|| quote!(let values = rows::<#n>(batch.values);));
+        let rates = reads(true).then(|| quote!(let rates = rows::<#n>(batch.rates);));
+        quote!(#values #rates)
+    }
+
+    /// Coordinates of the nodes, and the map of straight elements, which is the same at all points.
+    fn load_geometry(&self, tables: &mut Tables) -> TokenStream {
+        let nodes = self.kernel.geometry.nodes().len();
+        let (nodes, rows) = (count(nodes), count(2 * nodes));
+        let map = self.map_at(tables, &quote!(0));
         quote! {
+            let nodes = rows::<#rows>(batch.nodes);
             let mut x = [[zero; 2]; #nodes];
             for a in 0..#nodes {
-                x[a] = [Lane::load(s, &batch.nodes[2 * a], o), Lane::load(s, &batch.nodes[2 * a + 1], o)];
+                x[a] = [Lane::load(s, &nodes[2 * a], o), Lane::load(s, &nodes[2 * a + 1], o)];
             }
+            let straight = if batch.straight { Some(#map) } else { None };
         }
+    }
+
+    /// The element's map at a point: inverse transposed Jacobian and determinant of a triangle, length of an edge.
+    fn map_at(&self, tables: &mut Tables, point: &TokenStream) -> TokenStream {
+        let gradients = tables.gradients(self.kernel, self.kernel.geometry);
+        let function = ident(if self.kernel.cell == Cell::Triangle { "triangle" } else { "segment" });
+        quote!(#function(s, &x, &#gradients[#point]))
     }
 
     fn declare(&self) -> TokenStream {
@@ -135,7 +173,13 @@ impl Emitter<'_, '_> {
             Job::Residual(_) => quote!(let mut residual = [zero; #n];),
             Job::Tangent(..) => {
                 let entries = count(self.kernel.rows() - self.kernel.unknowns());
-                quote!(let mut residual = [zero; #n]; let mut tangent = [zero; #entries];)
+                quote! {
+                    let mut residual = [zero; #n];
+                    let tangent = rows_mut::<#entries>(&mut out[#n..]);
+                    for row in tangent.iter_mut() {
+                        zero.store(row, o);
+                    }
+                }
             }
             Job::Columns(_) => {
                 let rows = count(self.kernel.rows());
@@ -147,14 +191,9 @@ impl Emitter<'_, '_> {
     fn finish(&self) -> TokenStream {
         match &self.kernel.job {
             Job::Value(_) => quote!(total.store(&mut out[0], o);),
-            Job::Residual(_) => quote!(for (row, sum) in out.iter_mut().zip(residual) {
+            Job::Residual(_) | Job::Tangent(..) => quote!(for (row, sum) in out.iter_mut().zip(residual) {
                 sum.store(row, o);
             }),
-            Job::Tangent(..) => {
-                quote!(for (row, sum) in out.iter_mut().zip(residual.into_iter().chain(tangent)) {
-                    sum.store(row, o);
-                })
-            }
             Job::Columns(_) => quote!(for (row, sum) in out.iter_mut().zip(columns) {
                 sum.store(row, o);
             }),
@@ -201,27 +240,27 @@ impl Emitter<'_, '_> {
     fn map(&mut self, tables: &mut Tables) -> TokenStream {
         let kernel = self.kernel;
         let weights = tables.weights(kernel);
-        let gradients = tables.gradients(kernel, kernel.geometry);
         let mut code = Vec::new();
         for (axis, _) in kernel.coordinates.iter().enumerate().filter(|(_, read)| **read) {
             let name = self.names.symbol(self.lowering, SymbolKind::Coordinate(axis));
             let (axis, values) = (count(axis), tables.values(kernel, kernel.geometry));
             code.push(quote!(let #name = coordinate(s, &x, &#values[q], #axis);));
         }
-        let measure = match kernel.cell {
-            Cell::Triangle if !kernel.uses.iter().any(|one| kernel.needs_gradients(one.field)) => {
-                quote!(let (_, measure) = triangle(s, &x, &#gradients[q]);)
-            }
-            Cell::Triangle => quote!(let (map, measure) = triangle(s, &x, &#gradients[q]);),
-            Cell::Segment => quote!(let measure = segment(s, &x, &#gradients[q]);),
+        let gradients_read = kernel.uses.iter().any(|one| kernel.needs_gradients(one.field));
+        let names = match (kernel.cell, gradients_read) {
+            (Cell::Segment, _) => quote!(measure),
+            (Cell::Triangle, false) => quote!((_, measure)),
+            (Cell::Triangle, true) => quote!((map, measure)),
         };
+        let map = self.map_at(tables, &quote!(q));
+        code.push(quote!(let #names = match straight { Some(same) => same, None => #map };));
         let hoop = kernel.axisymmetric.then(|| {
             let r = self.names.symbol(self.lowering, SymbolKind::Coordinate(0));
             let tau = number(std::f64::consts::TAU);
             quote!(* (Lane::splat(s, #tau) * #r))
         });
         self.names.set_symbol(SymbolKind::Weight, ident("weight"));
-        code.push(quote!(#measure let weight = Lane::splat(s, #weights[q]) * measure #hoop;));
+        code.push(quote!(let weight = Lane::splat(s, #weights[q]) * measure #hoop;));
         for one in &kernel.uses {
             let field = self.field_name(one);
             if kernel.needs_gradients(one.field) {
@@ -276,7 +315,7 @@ impl Emitter<'_, '_> {
                 let (name, basis) = (&names[k], self.basis(one, inputs[k].input, &ident("a")));
                 quote!(#name = v.mul_add(#basis, #name);)
             });
-            sums.push(quote!(let v = Lane::load(s, &batch.#rows[#row], o); #(#adds)*));
+            sums.push(quote!(let v = Lane::load(s, &#rows[#row], o); #(#adds)*));
         }
         let nodes = count(one.nodes());
         quote!(#(let mut #names = zero;)* for a in 0..#nodes { #(#sums)* })

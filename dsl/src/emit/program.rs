@@ -57,13 +57,7 @@ impl Plan {
         let functionals = self.functionals.iter().flatten();
         let observables = self.observables.iter().flatten().map(|(_, kernels)| kernels);
         let all = self.terms.iter().chain(functionals).chain(observables);
-        all.flat_map(|kernels| {
-            let columns = kernels.columns.as_ref().map(|(_, kernel)| kernel);
-            [kernels.value.as_ref(), kernels.residual.as_ref(), kernels.tangent.as_ref(), columns]
-                .into_iter()
-                .flatten()
-        })
-        .collect()
+        all.flat_map(Kernels::all).collect()
     }
 }
 

@@ -1,7 +1,13 @@
 //! What a kernel costs, per element: counted, not measured.
 
-use super::{Job, Kernel, POINT, PRELUDE};
+use super::{FieldUse, Job, Kernel, POINT, PRELUDE};
 use crate::lower::FieldInput;
+use ansatz_elements::Cell;
+
+/// Arithmetic of the core to which [`Cost::nanoseconds`] refers \[flop/ns\]: 16 flops in a cycle of 3.1 GHz.
+pub const FLOPS_PER_NS: f64 = 50.0;
+/// Traffic of that core with memory \[byte/ns\].
+pub const BYTES_PER_NS: f64 = 20.0;
 
 /// Operations in units of one addition (a multiplication with addition counts 2, a division 8, `exp` 24) and storage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,7 +16,9 @@ pub struct Cost {
     pub points: usize,
     /// Once per batch of elements.
     pub prelude: usize,
-    /// Per point: map to the element and its inverse.
+    /// Once per element with straight edges: its map and the inverse. (Curved elements have this at every point.)
+    pub map: usize,
+    /// Per point: coordinates, measure, gradients of basis functions.
     pub geometry: usize,
     /// Per point: values and gradients of fields.
     pub interpolation: usize,
@@ -20,20 +28,17 @@ pub struct Cost {
     pub accumulation: usize,
     /// Named values of the law.
     pub temporaries: usize,
-    /// Read and written per element.
+    /// Read and written per element, if nothing that neighbours share is in a cache: coordinates, unknowns, and what is added to.
     pub bytes: usize,
 }
 
 impl Cost {
     /// Counts a kernel.
     pub fn of(kernel: &Kernel) -> Cost {
-        let n = kernel.unknowns();
-        let rates = kernel.inputs.iter().any(|input| input.rate);
-        let values = kernel.inputs.iter().any(|input| !input.rate);
-        let read = 2 * kernel.geometry.nodes().len() + n * (usize::from(rates) + usize::from(values));
         Cost {
             points: kernel.rule.weights.len(),
             prelude: kernel.schedule.cost(PRELUDE) as usize,
+            map: map(kernel),
             geometry: geometry(kernel),
             interpolation: kernel
                 .inputs
@@ -43,24 +48,39 @@ impl Cost {
             point: kernel.schedule.cost(POINT) as usize,
             accumulation: accumulation(kernel),
             temporaries: kernel.schedule.statements(PRELUDE).len() + kernel.schedule.statements(POINT).len(),
-            bytes: 8 * (read + kernel.rows()),
+            bytes: bytes(kernel),
         }
     }
 
-    /// All operations of an element.
+    /// All operations of an element with straight edges.
     pub fn operations(&self) -> usize {
-        self.points * (self.geometry + self.interpolation + self.point + self.accumulation)
+        self.map + self.points * (self.geometry + self.interpolation + self.point + self.accumulation)
+    }
+
+    /// Operations per byte.
+    pub fn intensity(&self) -> f64 {
+        self.operations() as f64 / self.bytes as f64
+    }
+
+    /// Least time on a core with [`FLOPS_PER_NS`] and [`BYTES_PER_NS`] \[ns\]: the greater of arithmetic and traffic.
+    pub fn nanoseconds(&self) -> f64 {
+        (self.operations() as f64 / FLOPS_PER_NS).max(self.bytes as f64 / BYTES_PER_NS)
     }
 }
 
+/// Jacobian; determinant and inverse of a triangle, length of an edge.
+fn map(kernel: &Kernel) -> usize {
+    let jacobian = 2 * kernel.geometry.nodes().len() * 2 * kernel.cell.dimension();
+    jacobian + if kernel.cell == Cell::Triangle { 17 } else { 11 }
+}
+
 fn geometry(kernel: &Kernel) -> usize {
-    let nodes = kernel.geometry.nodes().len();
-    let dimension = kernel.cell.dimension();
     let coordinates = kernel.coordinates.iter().filter(|&&read| read).count();
-    let jacobian = 2 * nodes * (2 * dimension + coordinates);
-    let gradients =
-        |one: &super::FieldUse| if kernel.needs_gradients(one.field) { 6 * one.nodes() } else { 0 };
-    jacobian + 16 + kernel.uses.iter().map(gradients).sum::<usize>()
+    let weight = if kernel.axisymmetric { 3 } else { 1 };
+    let gradients = |one: &FieldUse| if kernel.needs_gradients(one.field) { 6 * one.nodes() } else { 0 };
+    2 * kernel.geometry.nodes().len() * coordinates
+        + weight
+        + kernel.uses.iter().map(gradients).sum::<usize>()
 }
 
 fn accumulation(kernel: &Kernel) -> usize {
@@ -73,10 +93,30 @@ fn accumulation(kernel: &Kernel) -> usize {
         Job::Tangent(flux, tangent) => {
             let residual: usize = flux.iter().map(|(test, _)| rows(nodes(test))).sum();
             let entries = tangent.entries.iter().flatten().flatten().count();
-            let columns: usize = tangent.trials.iter().map(nodes).max().unwrap_or(0) * 2 * entries;
-            let half = if tangent.symmetric { 1 } else { 2 };
-            let blocks: usize = tangent.tests.iter().map(|test| nodes(test) * kernel.unknowns() * half).sum();
-            residual + columns + blocks
+            let slopes: usize = tangent.trials.iter().map(nodes).max().unwrap_or(0) * 2 * entries;
+            let products = |test: &FieldInput| 2 * columns_of(kernel, test, tangent.symmetric);
+            residual + slopes + tangent.tests.iter().map(products).sum::<usize>()
         }
     }
+}
+
+/// Entries of a tangent that a test works on, over all its nodes.
+fn columns_of(kernel: &Kernel, test: &FieldInput, symmetric: bool) -> usize {
+    let one = kernel.use_of(test.field);
+    let row = |node: usize| one.first + node * one.components + test.component;
+    (0..one.nodes()).map(|node| if symmetric { row(node) + 1 } else { kernel.unknowns() }).sum()
+}
+
+/// Coordinates; number and value (and rate) of each unknown; entries of the residual and of the matrix, read and written, the latter with
+/// their places.
+fn bytes(kernel: &Kernel) -> usize {
+    let n = kernel.unknowns();
+    let interpolated = [false, true].map(|rate| kernel.inputs.iter().any(|input| input.rate == rate));
+    let read = interpolated.into_iter().filter(|&read| read).count();
+    let written = match kernel.job {
+        Job::Value(_) => 0,
+        Job::Residual(_) | Job::Columns(_) => 16 * kernel.rows(),
+        Job::Tangent(..) => 16 * n + 20 * (kernel.rows() - n),
+    };
+    16 * kernel.geometry.nodes().len() + (4 + 8 * read) * n + written
 }

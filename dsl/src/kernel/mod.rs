@@ -140,6 +140,11 @@ impl Kernel {
         }
     }
 
+    /// Whether it interpolates rates.
+    pub fn reads_rates(&self) -> bool {
+        self.inputs.iter().any(|input| input.rate)
+    }
+
     /// The use of a field.
     pub fn use_of(&self, field: FieldId) -> &FieldUse {
         // A kernel's inputs and tests are of the fields that its term uses.
@@ -185,6 +190,14 @@ pub struct Kernels {
     pub tangent: Option<Kernel>,
     /// Derivatives by states and quantities.
     pub columns: Option<(Vec<SymbolKind>, Kernel)>,
+}
+
+impl Kernels {
+    /// Those that there are.
+    pub fn all(&self) -> impl Iterator<Item = &Kernel> {
+        let columns = self.columns.as_ref().map(|(_, kernel)| kernel);
+        [self.value.as_ref(), self.residual.as_ref(), self.tangent.as_ref(), columns].into_iter().flatten()
+    }
 }
 
 /// Builds the kernels of a term, named `name` and what they compute.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::cost::Cost;
+use super::cost::{BYTES_PER_NS, Cost, FLOPS_PER_NS};
 use super::{Flux, Job, Kernel};
 use crate::lower::{Lowering, input_name, symbol_name};
 use crate::scalar::Id;
@@ -35,8 +35,14 @@ pub fn kernel(kernel: &Kernel, lowering: &Lowering<'_>) -> String {
     );
     let _ = writeln!(
         text,
-        "  per point: geometry {}, interpolation {}, law {}, accumulation {}; {} temporaries, {} bytes per element",
-        cost.geometry, cost.interpolation, cost.point, cost.accumulation, cost.temporaries, cost.bytes
+        "  per element: map {}, {} bytes; per point: geometry {}, interpolation {}, law {}, accumulation {}; {} temporaries",
+        cost.map,
+        cost.bytes,
+        cost.geometry,
+        cost.interpolation,
+        cost.point,
+        cost.accumulation,
+        cost.temporaries
     );
     let roots: Vec<(String, Id)> = labels(kernel, lowering).into_iter().zip(kernel.job.roots()).collect();
     let body = listing(&lowering.pool, &roots, &kernel.schedule, &|symbol| {
@@ -69,26 +75,31 @@ fn labels(kernel: &Kernel, lowering: &Lowering<'_>) -> Vec<String> {
     }
 }
 
-/// One line per kernel.
+/// One line per kernel: flops per element and where they go, bytes, and the least time that both allow.
 pub fn cost_table<'a>(kernels: impl IntoIterator<Item = &'a Kernel>) -> String {
-    let mut text = String::from(
-        "kernel                               points prelude geometry interp.   law   acc.  total temps  bytes\n",
+    let mut text = format!(
+        "Flops and bytes per element with straight edges; geometry to acc. per point; prelude per batch.\n\
+         Least time on a core with {FLOPS_PER_NS} flop/ns and {BYTES_PER_NS} byte/ns.\n\n\
+         kernel                               points prelude   map geometry interp.   law   acc. temps  flops  bytes flop/byte     ns\n",
     );
     for kernel in kernels {
         let cost = Cost::of(kernel);
         let _ = writeln!(
             text,
-            "{:<36} {:>6} {:>7} {:>8} {:>7} {:>5} {:>6} {:>6} {:>5} {:>6}",
+            "{:<36} {:>6} {:>7} {:>5} {:>8} {:>7} {:>5} {:>6} {:>5} {:>6} {:>6} {:>9.1} {:>6.1}",
             kernel.name,
             cost.points,
             cost.prelude,
+            cost.map,
             cost.geometry,
             cost.interpolation,
             cost.point,
             cost.accumulation,
-            cost.operations(),
             cost.temporaries,
-            cost.bytes
+            cost.operations(),
+            cost.bytes,
+            cost.intensity(),
+            cost.nanoseconds()
         );
     }
     text

@@ -6,12 +6,12 @@ use crate::error::Error;
 use crate::generated::{
     Action, Batch, Column, Domain, Event, Every, Field, FrameColumn, Frames, Functional, FunctionalKind,
     Geometry, Integral, Integrator, Layout, MeshSizing, Observable, ObservableKind, PointFunction,
-    PointInput, Program, Record, Solve, Space, Start, State, StateSystem, Table, Trigger, Use,
+    PointInput, Program, Record, Row, Solve, Space, Start, State, StateSystem, Table, Trigger, Use,
 };
 use crate::mesh::structured_rectangle;
 use crate::observer::{Frame, Observer};
 
-type Rows = [[f64; 8]];
+type Rows = [Row];
 
 const BODY: Domain = Domain::Cells(&["body"]);
 
@@ -29,7 +29,7 @@ fn mass(i: usize, j: usize) -> f64 {
 fn weighted(batch: &Batch<'_>, rows: &Rows, out: &mut Rows) {
     for (i, row) in out.iter_mut().enumerate().take(3) {
         let sum = |lane: usize| (0..3).map(|j| mass(i, j) * rows[j][lane]).sum::<f64>();
-        *row = std::array::from_fn(|lane| area(batch, lane) * sum(lane));
+        *row = Row::from_fn(|lane| area(batch, lane) * sum(lane));
     }
 }
 
@@ -37,7 +37,7 @@ fn weighted(batch: &Batch<'_>, rows: &Rows, out: &mut Rows) {
 fn mass_tangent(batch: &Batch<'_>, factor: f64, out: &mut Rows) {
     let entries = (0..3).flat_map(|i| (0..=i).map(move |j| (i, j)));
     for ((i, j), row) in entries.zip(out) {
-        *row = std::array::from_fn(|lane| factor * area(batch, lane) * mass(i, j));
+        *row = Row::from_fn(|lane| factor * area(batch, lane) * mass(i, j));
     }
 }
 
@@ -61,11 +61,11 @@ fn change_tangent(batch: &Batch<'_>, g: &[f64], out: &mut Rows) {
 
 fn total(batch: &Batch<'_>, _: &[f64], out: &mut Rows) {
     let mean = |lane: usize| (0..3).map(|j| batch.values[j][lane]).sum::<f64>() / 3.0;
-    out[0] = std::array::from_fn(|lane| area(batch, lane) * mean(lane));
+    out[0] = Row::from_fn(|lane| area(batch, lane) * mean(lane));
 }
 
 fn total_variation(batch: &Batch<'_>, _: &[f64], out: &mut Rows) {
-    out[..3].fill(std::array::from_fn(|lane| area(batch, lane) / 3.0));
+    out[..3].fill(Row::from_fn(|lane| area(batch, lane) / 3.0));
 }
 
 const INTEGRAL_OF_U: Integral = Integral {
@@ -74,6 +74,7 @@ const INTEGRAL_OF_U: Integral = Integral {
     block: 0,
     domain: BODY,
     uses: &[Use { field: 0 }],
+    rates: true,
     symmetric: true,
     value: Some(total),
     residual: total_variation,

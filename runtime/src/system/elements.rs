@@ -2,14 +2,16 @@
 
 use super::unknowns::{Unknowns, path_edges, region_cells};
 use crate::error::Error;
-use crate::generated::{BATCH, Batch, Domain, Use};
+use crate::generated::{BATCH, Batch, Domain, Integral, Row};
 use crate::mesh::Mesh;
+use ansatz_elements::Element;
 
-/// Lanes of one scalar quantity.
-pub type Row = [f64; BATCH];
+/// Greatest distance of a middle node from the middle of a straight edge, in roundings of its coordinates.
+const ROUNDINGS: f64 = 4.0;
 
 struct Header {
     region: usize,
+    straight: bool,
     /// Elements in the batch; the last one is repeated in further lanes.
     count: usize,
 }
@@ -23,30 +25,33 @@ pub struct Elements {
     /// Local unknowns per element.
     local: usize,
     unknowns: Vec<[u32; BATCH]>,
+    reads_rates: bool,
 }
 
 /// Buffers for the values of a batch.
-#[derive(Default)]
 pub struct Gathered {
     values: Vec<Row>,
     rates: Vec<Row>,
 }
 
 impl Elements {
-    /// Elements of `domain`, with local unknowns use by use, node by node, component by component.
-    pub fn new(mesh: &Mesh, unknowns: &Unknowns, domain: Domain, uses: &[Use]) -> Result<Self, Error> {
-        let groups = element_nodes(mesh, domain)?;
-        let nodes_per_element = if matches!(domain, Domain::Cells(_)) { 6 } else { 3 };
+    /// Elements of the domain of `integral`, with local unknowns use by use, node by node, component by component.
+    pub fn new(mesh: &Mesh, unknowns: &Unknowns, integral: &Integral) -> Result<Self, Error> {
+        let groups = element_nodes(mesh, integral.domain)?;
+        let geometry = geometry(integral.domain);
         let mut set = Self {
             headers: Vec::new(),
-            coordinate_rows: 2 * nodes_per_element,
+            coordinate_rows: 2 * geometry.nodes().len(),
             coordinates: Vec::new(),
             local: 0,
             unknowns: Vec::new(),
+            reads_rates: integral.rates,
         };
         for (region, group) in groups.iter().enumerate() {
             for chunk in group.chunks(BATCH) {
-                set.push_batch(mesh, unknowns, region, chunk, uses)?;
+                set.push_batch(mesh, unknowns, integral, chunk)?;
+                let straight = chunk.iter().all(|nodes| is_straight(mesh, geometry, nodes));
+                set.headers.push(Header { region, straight, count: chunk.len() });
             }
         }
         set.local = if set.headers.is_empty() { 0 } else { set.unknowns.len() / set.headers.len() };
@@ -57,17 +62,16 @@ impl Elements {
         &mut self,
         mesh: &Mesh,
         unknowns: &Unknowns,
-        region: usize,
+        integral: &Integral,
         chunk: &[Vec<u32>],
-        uses: &[Use],
     ) -> Result<(), Error> {
         let lanes: [&[u32]; BATCH] = std::array::from_fn(|lane| chunk[lane.min(chunk.len() - 1)].as_slice());
         for node in 0..lanes[0].len() {
             for axis in 0..2 {
-                self.coordinates.push(lanes.map(|nodes| mesh.nodes[nodes[node] as usize][axis]));
+                self.coordinates.push(Row(lanes.map(|nodes| mesh.nodes[nodes[node] as usize][axis])));
             }
         }
-        for used in uses {
+        for used in integral.uses {
             let field = &unknowns.fields[used.field];
             let carrying = field_nodes(lanes[0].len(), field.nodes_per_cell);
             for node in 0..carrying {
@@ -83,7 +87,6 @@ impl Elements {
                 }
             }
         }
-        self.headers.push(Header { region, count: chunk.len() });
         Ok(())
     }
 
@@ -114,6 +117,12 @@ impl Elements {
         })
     }
 
+    /// Buffers of the size that [`Self::gather`] needs.
+    pub fn buffers(&self) -> Gathered {
+        let rates = if self.reads_rates { self.local } else { 0 };
+        Gathered { values: vec![Row::ZERO; self.local], rates: vec![Row::ZERO; rates] }
+    }
+
     /// The batch as kernels see it, with values and rates gathered from y and its rate.
     pub fn gather<'a>(
         &'a self,
@@ -123,21 +132,48 @@ impl Elements {
         alpha: f64,
         buffer: &'a mut Gathered,
     ) -> Batch<'a> {
-        buffer.values.clear();
-        buffer.rates.clear();
-        for row in self.unknowns(batch) {
-            buffer.values.push(row.map(|u| y[u as usize]));
-            buffer.rates.push(row.map(|u| rates[u as usize]));
-        }
+        collect(y, self.unknowns(batch), &mut buffer.values);
+        collect(rates, self.unknowns(batch), &mut buffer.rates);
         let rows = self.coordinate_rows;
+        let header = &self.headers[batch];
         Batch {
-            region: self.headers[batch].region,
+            region: header.region,
             nodes: &self.coordinates[batch * rows..(batch + 1) * rows],
+            straight: header.straight,
             values: &buffer.values,
             rates: &buffer.rates,
             alpha,
         }
     }
+}
+
+/// Fills rows with the numbers at given places of a vector.
+fn collect(vector: &[f64], places: &[[u32; BATCH]], rows: &mut [Row]) {
+    for (row, places) in rows.iter_mut().zip(places) {
+        for lane in 0..BATCH {
+            row[lane] = vector[places[lane] as usize];
+        }
+    }
+}
+
+/// The element whose nodes carry the geometry.
+fn geometry(domain: Domain) -> &'static Element {
+    match domain {
+        Domain::Cells(_) => Element::P2_TRIANGLE,
+        Domain::Edges(_) => Element::P2_SEGMENT,
+    }
+}
+
+/// Whether the middle node of every edge lies in its middle.
+fn is_straight(mesh: &Mesh, geometry: &Element, nodes: &[u32]) -> bool {
+    let x = |local: usize, axis: usize| mesh.nodes[nodes[local] as usize][axis];
+    geometry.edge_nodes.iter().all(|edge| match **edge {
+        [a, b, middle] => (0..2).all(|axis| {
+            let (a, b) = (x(a, axis), x(b, axis));
+            (x(middle, axis) - 0.5 * (a + b)).abs() <= ROUNDINGS * f64::EPSILON * a.abs().max(b.abs())
+        }),
+        _ => true,
+    })
 }
 
 /// Nodes of an element that carry a field: an edge has 2 or 3, a cell 3 or 6.

@@ -1,9 +1,9 @@
 //! Integrals over elements: their residual, tangent and value, added through precomputed positions.
 
-use super::elements::{Elements, Gathered, Row};
+use super::elements::{Elements, Gathered};
 use super::unknowns::{NONE, Unknowns};
 use crate::error::Error;
-use crate::generated::{BATCH, GlobalTangent, Integral};
+use crate::generated::{BATCH, GlobalTangent, Integral, Row};
 use crate::mesh::Mesh;
 use crate::solve::sparse::{MatrixKind, SparsePattern};
 
@@ -37,17 +37,11 @@ pub struct Term {
 impl Term {
     /// Collects the elements of an integral.
     pub fn new(integral: &'static Integral, mesh: &Mesh, unknowns: &Unknowns) -> Result<Self, Error> {
-        let elements = Elements::new(mesh, unknowns, integral.domain, integral.uses)?;
+        let elements = Elements::new(mesh, unknowns, integral)?;
         let rows = elements.local() + tangent_rows(integral.symmetric, elements.local());
-        let out = vec![[0.0; BATCH]; rows.max(1)];
-        Ok(Self {
-            integral,
-            elements,
-            positions: Vec::new(),
-            mirrored: Vec::new(),
-            gathered: Gathered::default(),
-            out,
-        })
+        let out = vec![Row::ZERO; rows.max(1)];
+        let gathered = elements.buffers();
+        Ok(Self { integral, elements, positions: Vec::new(), mirrored: Vec::new(), gathered, out })
     }
 
     /// Looks up where the tangent goes; entries of held unknowns go to the spare last value.
@@ -106,7 +100,7 @@ impl Term {
         for batch in 0..self.elements.batches() {
             let elements = self.elements.gather(batch, at.y, at.rates, at.alpha, &mut self.gathered);
             (self.integral.residual)(&elements, at.g, &mut self.out[..n]);
-            self.out[..n].iter_mut().flatten().for_each(|x| *x = x.abs());
+            self.out[..n].iter_mut().for_each(|row| *row = Row(row.map(f64::abs)));
             scatter_rows(&self.elements, batch, &self.out[..n], 1.0, magnitude);
         }
     }
@@ -146,7 +140,7 @@ impl Term {
     /// Adds d residual / d g[slot] to one column per slot of the integral.
     pub fn add_global_tangent(&mut self, at: At<'_>, tangent: &GlobalTangent, columns: &mut [Vec<f64>]) {
         let n = self.elements.local();
-        let mut out = vec![[0.0; BATCH]; n * tangent.slots.len()];
+        let mut out = vec![Row::ZERO; n * tangent.slots.len()];
         for batch in 0..self.elements.batches() {
             let elements = self.elements.gather(batch, at.y, at.rates, at.alpha, &mut self.gathered);
             (tangent.kernel)(&elements, at.g, &mut out);

@@ -7,11 +7,16 @@
 //! | P3 | [`flow`] | flow past a cylinder, lid-driven cavity |
 //! | P4 | `solves::sphere` | a rigid sphere pressed into a cylinder |
 //!
+//! [`factorisation`] needs no model: it factors matrices that are assembled by hand.
+//!
 //! Meshes, loads and laws are those of the peers whose figures ours are compared with, node by node.
 
 pub mod assembly;
 pub mod clock;
 pub mod compiler;
+pub mod factorisation;
+#[path = "../../frontal/tests/common/mod.rs"]
+mod matrices;
 pub mod flow;
 pub mod report;
 pub mod solves;

@@ -1,6 +1,7 @@
 //! Times one benchmark and prints it as a JSON line. Use a release build: `cargo run --release -p ansatz-benches -- p1 64 axi`.
 
 use ansatz_benches::assembly::Kind;
+use ansatz_benches::factorisation::factorisation;
 use ansatz_benches::report;
 use serde_json::Value;
 use std::path::Path;
@@ -11,6 +12,7 @@ const USAGE: &str = "usage: ansatz-benches p1 N ps|axi    assembly on N x N x 2 
                       p3 dfg L [DIR] flow past a cylinder on DIR/dfg_L.msh
                       p3 cavity N    lid-driven cavity
                       p4 N           a sphere pressed into a cylinder
+                      lu ns|elastic N [THREADS]   factorisation of a matrix with N unknowns
                       compile FILE   the stages of the compiler
                       dry TIME [COARSE]   the dry model to a time [s]";
 
@@ -41,6 +43,8 @@ fn run(words: &[&str]) -> Result<Value, String> {
         ["p3", "dfg", level, folder] => report::past_cylinder(number(level)?, Path::new(folder)),
         ["p3", "cavity", n] => report::cavity(number(n)?),
         ["p4", n] => report::sphere(number(n)?),
+        ["lu", kind, n] => factorisation(kind, number(n)?, 1),
+        ["lu", kind, n, threads] => factorisation(kind, number(n)?, number(threads)?),
         ["compile", file] => report::compiler(Path::new(file)),
         ["dry", until] => report::dry(number(until)?, 1.0),
         ["dry", until, coarse] => report::dry(number(until)?, number(coarse)?),

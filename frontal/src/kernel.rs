@@ -138,13 +138,12 @@ impl RightSolve<'_> {
         for k in 0..N {
             let t = &self.t[(j + k) * self.width + j..][..N];
             let reciprocal = s.splat_f64s(self.reciprocals[j + k]);
-            for r in 0..R {
-                x[k][r] = s.mul_f64s(x[k][r], reciprocal);
-            }
+            x[k] = x[k].map(|x| s.mul_f64s(x, reciprocal));
+            let solved = x[k];
             for n in k + 1..N {
                 let factor = s.splat_f64s(-t[n]);
-                for r in 0..R {
-                    x[n][r] = s.mul_add_f64s(x[k][r], factor, x[n][r]);
+                for (x, solved) in x[n].iter_mut().zip(solved) {
+                    *x = s.mul_add_f64s(solved, factor, *x);
                 }
             }
         }

@@ -31,7 +31,7 @@ impl Pivots {
     pub(crate) const NONE: Self = Self { perturbed: 0, smallest: f64::INFINITY, largest: 0.0, turn: 0 };
 
     fn add(&mut self, turn: usize, magnitude: f64, perturbed: bool) {
-        if (magnitude < self.smallest && self.perturbed == 0) || (perturbed && self.perturbed == 0) {
+        if self.perturbed == 0 && (perturbed || magnitude < self.smallest) {
             self.turn = turn;
         }
         self.smallest = self.smallest.min(magnitude);

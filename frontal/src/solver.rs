@@ -27,6 +27,14 @@ impl Solver {
     /// # Errors
     /// As [`Analysis::new`].
     pub fn new(pattern: Pattern<'_>, weak: &[u32]) -> Result<Self, Error> {
+        Self::with_threads(pattern, weak, 1)
+    }
+
+    /// As [`Self::new`], for factorisations on several threads.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_threads(pattern: Pattern<'_>, weak: &[u32], threads: usize) -> Result<Self, Error> {
         Ok(Self {
             kind: pattern.kind,
             starts: pattern.starts.to_vec(),
@@ -34,7 +42,7 @@ impl Solver {
             scaling: Scaling::new(pattern.size()),
             values: vec![0.0; pattern.rows.len()],
             norm: 0.0,
-            factors: Factors::new(Analysis::new(pattern, weak)?)?,
+            factors: Factors::with_threads(Analysis::new(pattern, weak)?, threads)?,
             work: [const { Vec::new() }; 3],
         })
     }

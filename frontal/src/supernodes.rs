@@ -87,14 +87,13 @@ impl Groups {
     /// Chains of columns each of which has the structure of the next and the next itself.
     fn without_fill(tree: &EliminationTree) -> Self {
         let size = tree.order.len();
-        let mut starts = vec![0];
-        let mut group_of = vec![0_u32; size];
-        for k in 1..size {
-            let chained = tree.parents[k - 1] == k as u32 && tree.counts[k - 1] == tree.counts[k] + 1;
-            if !chained {
+        let chained = |k: usize| tree.parents[k - 1] == k as u32 && tree.counts[k - 1] == tree.counts[k] + 1;
+        let (mut starts, mut group_of) = (vec![0], Vec::with_capacity(size));
+        for k in 0..size {
+            if k > 0 && !chained(k) {
                 starts.push(k as u32);
             }
-            group_of[k] = starts.len() as u32 - 1;
+            group_of.push(starts.len() as u32 - 1);
         }
         starts.push(size as u32);
         let last = |range: &[u32]| range[1] as usize - 1;

@@ -297,6 +297,20 @@ fn a_saddle_point_matrix_with_zeros_on_its_diagonal_is_solved() {
 }
 
 #[test]
+fn a_permutation_needs_pivots_from_everywhere() {
+    let pattern = random_pattern(40, MatrixKind::Unsymmetric, &mut Noise(5));
+    let mut values = vec![0.0; pattern.entries()];
+    pattern.for_each(|position, row, column| {
+        if row == (column + 1) % 40 {
+            values[position] = 2.0 + column as f64;
+        }
+    });
+    let (factored, solved) = solve(&System { pattern, values });
+    assert!(matches!(factored.method, Method::Lu | Method::PivotingLu), "{factored:?}");
+    assert!(solved.backward_error <= BACKWARD_ERROR, "{solved:?}");
+}
+
+#[test]
 fn several_right_hand_sides_are_solved_at_once() {
     for kind in [MatrixKind::Symmetric, MatrixKind::Unsymmetric] {
         let system = dominant(60, kind, |k| if k == 5 { -1.0 } else { 1.0 });

@@ -28,7 +28,26 @@ pub struct Border<'a> {
     pub corner: &'a [f64],
 }
 
-/// Direct solver for bordered matrices that share one pattern and number of borders.
+/// A sum of products of columns of length `n`, laid out column after column.
+#[derive(Clone, Copy, Debug)]
+pub enum Products<'a> {
+    /// `sum_k w_k c_k c_k^T`; no weight is zero.
+    Weighted {
+        /// `c`.
+        columns: &'a [f64],
+        /// `w`.
+        weights: &'a [f64],
+    },
+    /// `sum_k b_k c_k^T`.
+    General {
+        /// `b`.
+        b: &'a [f64],
+        /// `c`.
+        c: &'a [f64],
+    },
+}
+
+/// Direct solver for bordered matrices that share one pattern.
 pub struct BorderedSolver {
     sparse: LinearSolver,
     borders: usize,
@@ -46,31 +65,25 @@ pub struct BorderedSolver {
 }
 
 impl BorderedSolver {
-    /// Analyses the sparse pattern and allocates for `borders` borders; none is allowed.
+    /// Analyses the sparse pattern.
     ///
     /// # Errors
     /// As [`LinearSolver::new`].
-    pub fn new(pattern: &SparsePattern, borders: usize) -> Result<Self, LinearError> {
-        let size = pattern.size();
-        let [columns, rows] = [(); 2].map(|()| vec![0.0; size * borders]);
-        let eliminated = vec![0.0; 2 * size * borders];
-        let [corner, schur_matrix] = [(); 2].map(|()| vec![0.0; borders * borders]);
-        let [residual, solution] = [(); 2].map(|()| vec![0.0; size]);
-        let [border_residual, border_solution] = [(); 2].map(|()| vec![0.0; borders]);
-        let (sparse, schur) = (LinearSolver::new(pattern)?, DenseLu::new(borders));
+    pub fn new(pattern: &SparsePattern) -> Result<Self, LinearError> {
+        let [residual, solution] = [(); 2].map(|()| vec![0.0; pattern.size()]);
         Ok(Self {
-            sparse,
-            borders,
-            columns,
-            rows,
-            corner,
-            eliminated,
-            schur_matrix,
-            schur,
+            sparse: LinearSolver::new(pattern)?,
+            borders: 0,
+            columns: Vec::new(),
+            rows: Vec::new(),
+            corner: Vec::new(),
+            eliminated: Vec::new(),
+            schur_matrix: Vec::new(),
+            schur: DenseLu::new(0),
             residual,
-            border_residual,
+            border_residual: Vec::new(),
             solution,
-            border_solution,
+            border_solution: Vec::new(),
         })
     }
 
@@ -79,7 +92,7 @@ impl BorderedSolver {
         self.sparse.size()
     }
 
-    /// Number of borders.
+    /// Number of borders, or products, of the last factorisation.
     pub fn borders(&self) -> usize {
         self.borders
     }
@@ -99,7 +112,7 @@ impl BorderedSolver {
         expected: Definiteness,
     ) -> Result<FactorReport, LinearError> {
         let rows = border.rows.unwrap_or(border.columns);
-        self.corner.copy_from_slice(border.corner);
+        self.surround(border.columns.len(), |corner| corner.copy_from_slice(border.corner));
         let report = self.sparse.factor(values, expected)?;
         self.eliminate_columns(border.columns, rows, false)?;
         let negative_pivots = match (report.negative_pivots, border.rows) {
@@ -113,10 +126,9 @@ impl BorderedSolver {
 
     /// Factors the sum of the sparse matrix and products of columns, `K + sum_k b_k c_k^T`.
     ///
-    /// The sum is the matrix of the system bordered by `b_k`, `c_k` and minus the identity once the
+    /// The sum is the matrix of the system bordered by `b_k`, `c_k` and minus the identity (or minus `1/w_k` between equal columns) once the
     /// border unknowns are eliminated (Sherman, Morrison and Woodbury). [`Self::solve`] with a
-    /// vanishing border right-hand side solves with the sum and leaves `c_k^T x` in the border.
-    /// `None` stands for `c = b`.
+    /// vanishing border right-hand side solves with the sum and leaves `c_k^T x` (times `w_k`) in the border.
     ///
     /// When `K` is symmetric, the report's negative eigenvalues are those of the symmetric part of
     /// the products added to `K`, so of the sum whenever that is symmetric.
@@ -126,21 +138,49 @@ impl BorderedSolver {
     pub fn factor_low_rank(
         &mut self,
         values: &[f64],
-        b: &[f64],
-        c: Option<&[f64]>,
+        products: Products<'_>,
         expected: Definiteness,
     ) -> Result<FactorReport, LinearError> {
-        self.corner.fill(0.0);
-        self.corner.iter_mut().step_by(self.borders + 1).for_each(|diagonal| *diagonal = -1.0);
+        let (b, c) = match products {
+            Products::Weighted { columns, .. } => (columns, columns),
+            Products::General { b, c } => (b, c),
+        };
+        self.surround(b.len(), |corner| {
+            let size = (corner.len() as f64).sqrt() as usize;
+            for (k, diagonal) in corner.iter_mut().step_by(size + 1).enumerate() {
+                *diagonal = match products {
+                    Products::Weighted { weights, .. } => -weights[k].recip(),
+                    Products::General { .. } => -1.0,
+                };
+            }
+        });
         let report = self.sparse.factor(values, expected)?;
-        let both = c.is_some() && report.negative_pivots.is_some();
-        self.eliminate_columns(b, c.unwrap_or(b), both)?;
-        let change = match c {
-            Some(_) => self.negative_by_products(),
-            None => self.negative_by_squares(),
+        let both = matches!(products, Products::General { .. }) && report.negative_pivots.is_some();
+        self.eliminate_columns(b, c, both)?;
+        let change = match products {
+            Products::Weighted { weights, .. } => self.negative_by_squares(weights),
+            Products::General { .. } => self.negative_by_products(),
         };
         let negative_pivots = report.negative_pivots.map(|negative| negative.saturating_add_signed(change));
         Ok(FactorReport { negative_pivots, ..report })
+    }
+
+    /// Makes room for borders of this total length and writes their corner.
+    fn surround(&mut self, length: usize, corner: impl FnOnce(&mut [f64])) {
+        let borders = length / self.size().max(1);
+        if borders != self.borders || self.corner.is_empty() {
+            self.borders = borders;
+            self.schur = DenseLu::new(borders);
+            self.columns.resize(length, 0.0);
+            self.rows.resize(length, 0.0);
+            self.eliminated.resize(2 * length, 0.0);
+            self.schur_matrix.resize(borders * borders, 0.0);
+            self.corner.resize(borders * borders, 0.0);
+            self.border_residual.resize(borders, 0.0);
+            self.border_solution.resize(borders, 0.0);
+        }
+        self.corner.fill(0.0);
+        corner(&mut self.corner);
     }
 
     /// Solves for the columns of `B`, and of `C` when asked, and factors `S`.
@@ -163,9 +203,10 @@ impl BorderedSolver {
         self.schur.factor(&self.schur_matrix).map_err(|border| LinearError::SingularBorder { border })
     }
 
-    /// Change of the number of negative eigenvalues from `K` to `K + B B^T`.
-    fn negative_by_squares(&mut self) -> isize {
-        negative_eigenvalues(self.borders, &mut self.schur_matrix) as isize - self.borders as isize
+    /// Change of the number of negative eigenvalues from `K` to `K + sum_k w_k c_k c_k^T`.
+    fn negative_by_squares(&mut self, weights: &[f64]) -> isize {
+        let in_corner = weights.iter().filter(|weight| **weight > 0.0).count();
+        negative_eigenvalues(self.borders, &mut self.schur_matrix) as isize - in_corner as isize
     }
 
     /// Change of the number of negative eigenvalues from `K` to `K + (B C^T + C B^T) / 2`.
@@ -341,7 +382,7 @@ mod tests {
         ] {
             let (pattern, values) = chain(kind, 0.1);
             let border = Border { columns: &b, rows: rows.map(Vec::as_slice), corner: &corner };
-            let mut solver = BorderedSolver::new(&pattern, 3).unwrap();
+            let mut solver = BorderedSolver::new(&pattern).unwrap();
             let factored = solver.factor(&values, border, Definiteness::Positive).unwrap();
             assert_eq!(factored.negative_pivots.is_some(), rows.is_none());
             let (mut x, mut y) = (rhs[..SIZE].to_vec(), rhs[SIZE..].to_vec());
@@ -355,7 +396,7 @@ mod tests {
     fn constraints_and_negative_springs_count_in_the_inertia() {
         let (pattern, values) = chain(MatrixKind::Symmetric, 0.1);
         let b = columns(2, 0.0);
-        let mut solver = BorderedSolver::new(&pattern, 2).unwrap();
+        let mut solver = BorderedSolver::new(&pattern).unwrap();
         for (corner, negative) in [([0.0; 4], 2), ([-1.0, 0.0, 0.0, 1e6], 1), ([1e6, 0.0, 0.0, 1e6], 0)] {
             let border = Border { columns: &b, rows: None, corner: &corner };
             let report = solver.factor(&values, border, Definiteness::Positive).unwrap();
@@ -371,21 +412,34 @@ mod tests {
     fn low_rank_sums_agree_with_assembled_ones() {
         // a spring of stiffness 9 between the ends, left out of the sparse matrix
         let (pattern, values) = chain(MatrixKind::Symmetric, 0.1);
-        let mut spring = vec![0.0; SIZE];
-        (spring[0], spring[SIZE - 1]) = (3.0, -3.0);
-        let mut solver = BorderedSolver::new(&pattern, 1).unwrap();
-        let report = solver.factor_low_rank(&values, &spring, None, Definiteness::Positive).unwrap();
+        let mut stretch = vec![0.0; SIZE];
+        (stretch[0], stretch[SIZE - 1]) = (1.0, -1.0);
+        let products = Products::Weighted { columns: &stretch, weights: &[9.0] };
+        let mut solver = BorderedSolver::new(&pattern).unwrap();
+        let report = solver.factor_low_rank(&values, products, Definiteness::Positive).unwrap();
         assert_eq!(report.negative_pivots, Some(0));
         let f = columns(1, 0.2);
-        let (mut x, mut stretch) = (f.clone(), [0.0]);
-        solver.solve(&mut x, &mut stretch).unwrap();
+        let (mut x, mut force) = (f.clone(), [0.0]);
+        solver.solve(&mut x, &mut force).unwrap();
         let mut residual = f;
         pattern.subtract_product(&values, &x, &mut residual);
-        let force = 9.0 * (x[0] - x[SIZE - 1]);
-        residual[0] -= force;
-        residual[SIZE - 1] += force;
+        let expected = 9.0 * (x[0] - x[SIZE - 1]);
+        residual[0] -= expected;
+        residual[SIZE - 1] += expected;
         assert!(residual.iter().all(|r| r.abs() < 1e-13), "{residual:?}");
-        assert!((stretch[0] - 3.0 * (x[0] - x[SIZE - 1])).abs() < 1e-13);
+        assert!((force[0] - expected).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_spring_that_pushes_shows_in_the_inertia() {
+        let (pattern, values) = chain(MatrixKind::Symmetric, 0.1);
+        let c = columns(2, 0.4);
+        let mut solver = BorderedSolver::new(&pattern).unwrap();
+        for (weights, negative) in [([1.0, 2.0], 0), ([-1e-6, 2.0], 0), ([-1.0, 2.0], 1), ([-1.0, -2.0], 2)] {
+            let products = Products::Weighted { columns: &c, weights: &weights };
+            let report = solver.factor_low_rank(&values, products, Definiteness::Positive).unwrap();
+            assert_eq!(report.negative_pivots, Some(negative), "{weights:?}");
+        }
     }
 
     #[test]
@@ -411,8 +465,9 @@ mod tests {
                 sum[row * SIZE + column] += if row == column { 0.0 } else { values[position] };
             });
             let negative = negative_eigenvalues(SIZE, &mut sum);
-            let mut solver = BorderedSolver::new(&pattern, 2).unwrap();
-            let report = solver.factor_low_rank(&values, &b, Some(&c), Definiteness::Positive).unwrap();
+            let mut solver = BorderedSolver::new(&pattern).unwrap();
+            let products = Products::General { b: &b, c: &c };
+            let report = solver.factor_low_rank(&values, products, Definiteness::Positive).unwrap();
             assert_eq!(report.negative_pivots, Some(negative), "{ground} {m:?}");
         }
     }
@@ -423,7 +478,7 @@ mod tests {
         let (pattern, values) = chain(MatrixKind::Symmetric, 1e-9);
         let mean = vec![1.0; SIZE];
         let border = Border { columns: &mean, rows: None, corner: &[0.0] };
-        let mut solver = BorderedSolver::new(&pattern, 1).unwrap();
+        let mut solver = BorderedSolver::new(&pattern).unwrap();
         solver.factor(&values, border, Definiteness::Positive).unwrap();
         let (mut x, mut y) = (columns(1, 0.3), [0.7]);
         let rhs = [x.as_slice(), &y].concat();
@@ -437,15 +492,14 @@ mod tests {
         let (pattern, values) = chain(MatrixKind::Symmetric, 0.1);
         let b = [columns(1, 0.0), columns(1, 0.0)].concat();
         let border = Border { columns: &b, rows: None, corner: &[0.0; 4] };
-        let result =
-            BorderedSolver::new(&pattern, 2).unwrap().factor(&values, border, Definiteness::Positive);
+        let result = BorderedSolver::new(&pattern).unwrap().factor(&values, border, Definiteness::Positive);
         assert_eq!(result, Err(LinearError::SingularBorder { border: 1 }));
     }
 
     #[test]
     fn no_border_is_the_sparse_system() {
         let (pattern, values) = chain(MatrixKind::Symmetric, 0.1);
-        let mut bordered = BorderedSolver::new(&pattern, 0).unwrap();
+        let mut bordered = BorderedSolver::new(&pattern).unwrap();
         let border = Border { columns: &[], rows: None, corner: &[] };
         bordered.factor(&values, border, Definiteness::Positive).unwrap();
         let mut sparse = LinearSolver::new(&pattern).unwrap();

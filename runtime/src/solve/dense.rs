@@ -4,8 +4,41 @@
 
 /// Pivots of a matrix with unit row maxima below this are rounding errors.
 const SMALLEST_PIVOT: f64 = 64.0 * f64::EPSILON;
+/// Entries below this part of the largest do not count in a sum of squares.
+const SQUARES: f64 = 1e-13;
+/// A pivot on the diagonal is used down to this part of the largest entry beside it.
+const SMALLEST_DIAGONAL: f64 = 0.1;
 /// Sweeps of Jacobi rotations; convergence is quadratic and takes fewer than ten.
 const SWEEPS: usize = 30;
+
+/// A symmetric matrix as a sum of squares, `sum_k w_k v_k v_k^T`: (w, v) one after another, as many as its rank.
+///
+/// By elimination with the largest pivot left on the diagonal. `None` where the matrix is not symmetric, or where the diagonal that is left is too small.
+pub fn squares(size: usize, matrix: &[f64]) -> Option<Vec<(f64, Vec<f64>)>> {
+    let largest = matrix.iter().fold(0.0_f64, |largest, a| largest.max(a.abs()));
+    let negligible = SQUARES * largest;
+    let symmetric = (0..size * size).all(|k| {
+        let (i, j) = (k % size, k / size);
+        (matrix[k] - matrix[i * size + j]).abs() <= negligible
+    });
+    let mut rest = matrix.to_vec();
+    let mut squares = Vec::new();
+    while symmetric && rest.iter().any(|a| a.abs() > negligible) {
+        let diagonal = |&k: &usize| rest[k * size + k].abs();
+        let pivot = (0..size).max_by(|a, b| diagonal(a).total_cmp(&diagonal(b)))?;
+        let column = &rest[pivot * size..][..size];
+        let weight = column[pivot];
+        if squares.len() == size || column.iter().any(|a| a.abs() > weight.abs() / SMALLEST_DIAGONAL) {
+            return None;
+        }
+        let square: Vec<f64> = column.iter().map(|a| a / weight).collect();
+        for (k, entry) in rest.iter_mut().enumerate() {
+            *entry -= weight * square[k % size] * square[k / size];
+        }
+        squares.push((weight, square));
+    }
+    symmetric.then_some(squares)
+}
 
 /// LU factors of a dense matrix, with scaled rows and partial pivoting.
 #[derive(Clone, Debug)]
@@ -139,6 +172,29 @@ mod tests {
     use super::*;
 
     const SADDLE: [f64; 9] = [0.0, 2.0, 1e6, 2.0, 0.0, -3e6, 1e6, -3e6, 5e12];
+
+    #[test]
+    fn a_difference_is_one_square() {
+        let found = squares(2, &[3.0, -3.0, -3.0, 3.0]).unwrap();
+        assert_eq!(found, [(3.0, vec![-1.0, 1.0])]);
+        assert_eq!(squares(2, &[0.0; 4]).unwrap(), []);
+    }
+
+    #[test]
+    fn squares_add_up_to_the_matrix() {
+        let matrix = [2.0, 1.0, 0.5, 1.0, -3.0, 1.0, 0.5, 1.0, 1.0];
+        let mut sum = [0.0; 9];
+        for (weight, square) in squares(3, &matrix).unwrap() {
+            (0..9).for_each(|k| sum[k] += weight * square[k % 3] * square[k / 3]);
+        }
+        assert!(sum.iter().zip(&matrix).all(|(a, b)| (a - b).abs() < 1e-14), "{sum:?}");
+    }
+
+    #[test]
+    fn matrices_without_squares_are_known() {
+        assert_eq!(squares(2, &[1.0, 2.0, 0.0, 1.0]), None, "not symmetric");
+        assert_eq!(squares(2, &[0.0, 1.0, 1.0, 0.0]), None, "no diagonal");
+    }
 
     #[test]
     fn zero_diagonals_and_mixed_units_are_solved() {

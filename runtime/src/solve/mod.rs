@@ -1,6 +1,6 @@
 //! Solving the equations of a step: sparse patterns, direct linear solvers, borders.
 
 pub mod border;
-mod dense;
+pub(crate) mod dense;
 pub mod linear;
 pub mod sparse;

@@ -8,19 +8,72 @@ use super::states::Stage as StateStage;
 use super::terms::At;
 use super::unknowns::NONE;
 use crate::error::Cause;
+use crate::solve::border::Products;
+use crate::solve::dense::squares;
 
 /// Roundings that add up in an assembled residual.
 const ROUNDINGS: f64 = 8.0;
 
-/// The linearised balance at one point: residual, matrix values (kept in the system) and one outer product b c^T for each functional.
+/// The linearised balance at one point: residual, matrix values (kept in the system) and what functionals add to the matrix.
 #[derive(Clone, Debug, Default)]
 pub struct Balance {
     /// Residual per equation.
     pub residual: Vec<f64>,
-    /// Columns b, one after another.
-    pub b: Vec<f64>,
-    /// Columns c = grad Z, one after another.
-    pub c: Vec<f64>,
+    /// Sum of outer products of columns, one entry per equation.
+    pub products: OuterProducts,
+}
+
+/// Columns one after another, one entry per equation.
+#[derive(Clone, Debug)]
+pub enum OuterProducts {
+    /// sum_k w_k c_k c_k^T, where functionals act like springs between each other.
+    Weighted {
+        /// Columns c.
+        columns: Vec<f64>,
+        /// Weights w.
+        weights: Vec<f64>,
+    },
+    /// sum_j b_j c_j^T with c_j = grad Z_j.
+    General {
+        /// Columns b.
+        b: Vec<f64>,
+        /// Columns c.
+        c: Vec<f64>,
+    },
+}
+
+impl Default for OuterProducts {
+    fn default() -> Self {
+        Self::Weighted { columns: Vec::new(), weights: Vec::new() }
+    }
+}
+
+impl OuterProducts {
+    /// `y -= (sum of outer products) x`.
+    pub fn subtract_product(&self, x: &[f64], y: &mut [f64]) {
+        let [left, right] = self.factors().map(|columns| columns.chunks(x.len().max(1)));
+        for (k, (b, c)) in left.zip(right).enumerate() {
+            let weight = if let Self::Weighted { weights, .. } = self { weights[k] } else { 1.0 };
+            let along: f64 = c.iter().zip(x).map(|(c, x)| c * x).sum();
+            add(y, -weight * along, b);
+        }
+    }
+
+    /// The columns that are multiplied with each other, all of the left and all of the right factors.
+    pub fn factors(&self) -> [&[f64]; 2] {
+        match self {
+            Self::Weighted { columns, .. } => [columns, columns],
+            Self::General { b, c } => [b, c],
+        }
+    }
+
+    /// As the solver takes them.
+    pub fn columns(&self) -> Products<'_> {
+        match self {
+            Self::Weighted { columns, weights } => Products::Weighted { columns, weights },
+            Self::General { b, c } => Products::General { b, c },
+        }
+    }
 }
 
 impl System {
@@ -168,35 +221,58 @@ impl System {
             }
         }
         self.take_ramp_away(&mut residual);
-        let (b, c) = self.outer_products(y, rates, alpha);
-        Balance { residual: self.restrict(&residual), b, c }
+        let products = self.outer_products(y, rates, alpha);
+        Balance { residual: self.restrict(&residual), products }
     }
 
-    /// Columns b_j and c_j = grad Z_j of the functionals.
-    fn outer_products(&mut self, y: &[f64], rates: &[f64], alpha: f64) -> (Vec<f64>, Vec<f64>) {
-        let count = self.functionals.len();
-        let states = self.program.states.len();
+    /// What functionals add to the matrix: sum_j b_j (grad Z_j)^T, of which b_j = sum_k M_kj grad Z_k + the tangent of integrals that read
+    /// functionals or states.
+    fn outer_products(&mut self, y: &[f64], rates: &[f64], alpha: f64) -> OuterProducts {
+        let (count, states) = (self.functionals.len(), self.program.states.len());
         let mut of_states = vec![0.0; states * count];
         if let Some(solver) = &mut self.states {
             solver.sensitivity(&self.g, alpha, &mut of_states);
         }
+        let mixing = self.mixing(alpha, &of_states);
+        let read_by_integrals = self.terms.iter().any(|term| term.integral.global_tangent.is_some());
+        let squares = if read_by_integrals { None } else { squares(count, &mixing) };
+        if let Some(squares) = squares {
+            let columns = squares.iter().flat_map(|(_, square)| self.blend_of_gradients(square)).collect();
+            return OuterProducts::Weighted { columns, weights: squares.iter().map(|(w, _)| *w).collect() };
+        }
         let mut columns = vec![vec![0.0; self.unknowns.length]; count];
-        if let Some(couplings) = &self.program.couplings {
-            let width = states + count;
-            let mut derivatives = vec![0.0; couplings.terms.len() * width];
-            (couplings.derivatives)(&self.g, alpha, &mut derivatives);
-            for (term, row) in couplings.terms.iter().zip(derivatives.chunks(width)) {
-                let gradient = &self.functionals[term.functional].gradient;
-                for (j, column) in columns.iter_mut().enumerate() {
-                    let through_states: f64 = (0..states).map(|s| row[s] * of_states[s * count + j]).sum();
-                    add(column, row[states + j] + through_states, gradient);
-                }
+        self.add_global_tangents(y, rates, alpha, &of_states, &mut columns);
+        let integrals = columns.iter().flat_map(|column| self.restrict(column));
+        let loads = mixing.chunks(count.max(1)).flat_map(|column| self.blend_of_gradients(column));
+        let b = integrals.zip(loads).map(|(a, b)| a + b).collect();
+        let c = self.functionals.iter().flat_map(|f| self.restrict(&f.gradient)).collect();
+        OuterProducts::General { b, c }
+    }
+
+    /// M_kj, column after column: how the load on functional k changes with functional j.
+    fn mixing(&self, alpha: f64, of_states: &[f64]) -> Vec<f64> {
+        let (count, states) = (self.functionals.len(), self.program.states.len());
+        let mut mixing = vec![0.0; count * count];
+        let Some(couplings) = &self.program.couplings else { return mixing };
+        let width = states + count;
+        let mut derivatives = vec![0.0; couplings.terms.len() * width];
+        (couplings.derivatives)(&self.g, alpha, &mut derivatives);
+        for (term, row) in couplings.terms.iter().zip(derivatives.chunks(width)) {
+            for j in 0..count {
+                let through_states: f64 = (0..states).map(|s| row[s] * of_states[s * count + j]).sum();
+                mixing[j * count + term.functional] += row[states + j] + through_states;
             }
         }
-        self.add_global_tangents(y, rates, alpha, &of_states, &mut columns);
-        let b = columns.iter().flat_map(|column| self.restrict(column)).collect();
-        let c = self.functionals.iter().flat_map(|f| self.restrict(&f.gradient)).collect();
-        (b, c)
+        mixing
+    }
+
+    /// sum_k factor_k grad Z_k, one entry per equation.
+    fn blend_of_gradients(&self, factors: &[f64]) -> Vec<f64> {
+        let mut blend = vec![0.0; self.unknowns.length];
+        for (functional, factor) in self.functionals.iter().zip(factors) {
+            add(&mut blend, *factor, &functional.gradient);
+        }
+        self.restrict(&blend)
     }
 
     /// Integrals that read states or functionals: their share of the columns b_j.

@@ -74,7 +74,7 @@ impl System {
         let alpha = self.settings.time.map_or(0.0, |_| 1.0 / self.settings.max_step);
         let rates = vec![0.0; y.len()];
         let balance = self.linearise(&shaken, &rates, alpha, Curvature::Kept);
-        candidates.retain(|part| self.is_free(part, &[&balance.b, &balance.c]));
+        candidates.retain(|part| self.is_free(part, &balance.products.factors()));
         Ok(candidates)
     }
 

@@ -77,6 +77,8 @@ pub struct System {
     values: Vec<f64>,
     /// The factors of the last stage, if they may serve the next one.
     factored: Option<newton::Factored>,
+    /// Size of the forces that balanced each other in the last stage; zero before.
+    forces: f64,
     /// Place of each equation's diagonal entry in the values.
     diagonal: Vec<usize>,
     /// Typical edge length of a cell.
@@ -110,7 +112,7 @@ impl System {
         let symmetric = in_the_matrix(&terms, &functionals).all(|t| t.integral.symmetric);
         let kind = if symmetric { MatrixKind::Symmetric } else { MatrixKind::Unsymmetric };
         let pattern = SparsePattern::from_elements(free.len(), kind, []);
-        let solver = analyse(&pattern, functionals.len())?;
+        let solver = analyse(&pattern)?;
         let states = program.state_system.as_ref().map(|system| {
             let bounds = program.states.iter().map(|s| (s.bounds)(&g)).collect();
             StateSolver::new(system, program.layout, bounds)
@@ -140,6 +142,7 @@ impl System {
             values: Vec::new(),
             diagonal: Vec::new(),
             factored: None,
+            forces: 0.0,
             cell_size,
             indefinite: false,
             stable_pivots: None,
@@ -182,7 +185,7 @@ impl System {
         }
         self.pattern =
             SparsePattern::from_elements(self.free.len(), self.kind, groups.iter().map(Vec::as_slice));
-        self.solver = analyse(&self.pattern, self.functionals.len())?;
+        self.solver = analyse(&self.pattern)?;
         self.values = vec![0.0; self.pattern.entries() + 1];
         self.factored = None;
         let diagonal = (0..self.free.len() as u32).filter_map(|i| self.pattern.position(i, i));
@@ -204,9 +207,9 @@ fn in_the_matrix<'a>(terms: &'a [Term], functionals: &'a [FunctionalOn]) -> impl
 }
 
 /// A solver for the pattern. Without any equation it is one for a single equation, which is never asked.
-fn analyse(pattern: &SparsePattern, borders: usize) -> Result<BorderedSolver, Error> {
+fn analyse(pattern: &SparsePattern) -> Result<BorderedSolver, Error> {
     let single = (pattern.size() == 0).then(|| SparsePattern::from_elements(1, MatrixKind::Symmetric, []));
-    BorderedSolver::new(single.as_ref().unwrap_or(pattern), borders).map_err(|e| Error::Model(e.to_string()))
+    BorderedSolver::new(single.as_ref().unwrap_or(pattern)).map_err(|e| Error::Model(e.to_string()))
 }
 
 /// Diagonal of the box around a mesh.

@@ -61,14 +61,13 @@ struct Iterate {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Factored {
     alpha: f64,
-    scale: f64,
     negative_pivots: usize,
 }
 
 /// How far a stage is.
 struct Progress {
     current: Iterate,
-    /// Size of the forces that balance; a residual is small against it.
+    /// Size of the forces that balance; a residual is small against it. That of the last stage until a second tangent is needed.
     scale: f64,
     /// The last step made the residual so much smaller that the same factors will do again.
     keep_factors: bool,
@@ -113,7 +112,7 @@ impl System {
         let usable = self.factored.filter(|f| (f.alpha - problem.alpha).abs() <= 1e-9 * f.alpha);
         Progress {
             current,
-            scale: usable.map_or(0.0, |f| f.scale),
+            scale: self.forces,
             keep_factors: usable.is_some(),
             converging: false,
             negative_pivots: usable.map_or(0, |f| f.negative_pivots),
@@ -125,7 +124,8 @@ impl System {
     fn remember(&mut self, problem: &StageProblem<'_>, progress: &Progress) -> NewtonReport {
         let &Progress { negative_pivots, scale, report, .. } = progress;
         self.factored =
-            (report.iterations <= 1).then_some(Factored { alpha: problem.alpha, scale, negative_pivots });
+            (report.iterations <= 1).then_some(Factored { alpha: problem.alpha, negative_pivots });
+        self.forces = scale;
         self.stable_pivots.get_or_insert(negative_pivots);
         NewtonReport { unstable_modes: self.unstable_modes(negative_pivots), ..report }
     }
@@ -150,8 +150,10 @@ impl System {
         let contraction = norm(&progress.current.residual) / before;
         progress.keep_factors = contraction < CONTRACTION;
         progress.converging = contraction < CONVERGING;
-        let Iterate { y, rates, .. } = &progress.current;
-        progress.scale = self.force_scale(y, rates, problem.alpha);
+        if progress.scale == 0.0 || progress.report.iterations > 1 {
+            let Iterate { y, rates, .. } = &progress.current;
+            progress.scale = self.force_scale(y, rates, problem.alpha);
+        }
         Ok(self.converged(progress))
     }
 
@@ -226,7 +228,7 @@ impl System {
         let expected = if self.indefinite { Definiteness::Indefinite } else { Definiteness::Positive };
         let factors = self
             .solver
-            .factor_low_rank(&self.values[..entries], &balance.b, Some(&balance.c), expected)
+            .factor_low_rank(&self.values[..entries], balance.products.columns(), expected)
             .map_err(|e| self.matrix_failure(e))?;
         let negative_pivots = factors.negative_pivots.unwrap_or(0);
         self.indefinite = negative_pivots > 0;
@@ -236,7 +238,7 @@ impl System {
     /// Direction that the present factors give for a residual.
     fn solve_for(&mut self, residual: &[f64]) -> Result<Vec<f64>, Cause> {
         let mut direction: Vec<f64> = residual.iter().map(|r| -r).collect();
-        let mut border = vec![0.0; self.functionals.len()];
+        let mut border = vec![0.0; self.solver.borders()];
         self.solver.solve(&mut direction, &mut border).map_err(|e| self.matrix_failure(e))?;
         Ok(direction)
     }

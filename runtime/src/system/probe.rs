@@ -58,11 +58,7 @@ impl Probe<'_> {
         let x = system.restrict(vector);
         let mut product = vec![0.0; x.len()];
         system.pattern.subtract_product(&system.values, &x, &mut product);
-        let columns = self.balance.b.chunks(x.len().max(1)).zip(self.balance.c.chunks(x.len().max(1)));
-        for (b, c) in columns {
-            let along: f64 = c.iter().zip(&x).map(|(c, x)| c * x).sum();
-            product.iter_mut().zip(b).for_each(|(p, b)| *p -= along * b);
-        }
+        self.balance.products.subtract_product(&x, &mut product);
         let mut full = vec![0.0; vector.len()];
         system.free.iter().zip(product).for_each(|(&unknown, p)| full[unknown as usize] = -p);
         full

@@ -32,7 +32,8 @@ fn nothing_leaves_the_axis_whatever_path_leads_along_it() {
     let mut notes = Notes::default();
     simulation.run(&mut notes, None).expect("the run reaches its end");
     let (_, last) = notes.rows.last().expect("a row for every step");
-    assert_eq!(last[0], 0.0);
+    // Nodes are approached from inside, by 1e-6 of the way to the centre of a cell.
+    assert!(last[0] < 1e-6 * last[1], "{last:?}");
     assert!(last[1] > 0.1, "the load moves the body");
 }
 

@@ -33,10 +33,11 @@ pub fn build(name: &str, identity: &str, rust: &str) -> Result<PathBuf, String> 
     copy_if_absent(&home.join("Cargo.lock"), &folder.join("Cargo.lock"))?;
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let status = Command::new(&cargo)
-        .args(["build", "--release", "--manifest-path"])
+        .args(["rustc", "--release", "--manifest-path"])
         .arg(folder.join("Cargo.toml"))
         .arg("--target-dir")
         .arg(&target)
+        .args(["--", "-C", "lto=off"]) // kernels call nothing across their parts of the program
         .current_dir(&home) // the toolchain that the sources name
         .status()
         .map_err(|e| {

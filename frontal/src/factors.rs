@@ -6,6 +6,7 @@ use crate::front::{Blocks, Scratch, assemble, eliminate};
 use crate::pattern::Kind;
 use crate::pivot::{Pivots, Threshold};
 use crate::schedule::{Place, Schedule};
+use crate::sweep::Row;
 
 /// Pivots of a scaled matrix below this are rounding errors.
 const ZERO_PIVOT: f64 = 1e-13;
@@ -21,6 +22,7 @@ pub struct Factors {
     schedule: Schedule,
     sites: Vec<Site>,
     pub(crate) work: Vec<f64>,
+    pub(crate) rows: Vec<Row>,
 }
 
 /// Memory for the fronts that are eliminated one after the other.
@@ -67,6 +69,7 @@ impl Factors {
             sites: schedule.stacks.iter().map(site).collect::<Result<_, Error>>()?,
             schedule,
             work: Vec::new(),
+            rows: Vec::new(),
             analysis,
         })
     }

@@ -186,18 +186,16 @@ impl WithSimd for RightSolve<'_> {
     }
 }
 
-/// `Y += A^T X`: products of the columns of `A` with some vectors.
+/// `y += A^T x`: products of the columns of `A` with a vector.
 pub(crate) struct Products<'a> {
-    /// `count` numbers for every column of `A`, those of one column side by side.
+    /// One number per column.
     pub y: &'a mut [f64],
-    /// `rows x columns`.
+    /// `rows x y.len()`.
     pub a: &'a [f64],
-    /// `rows x count`.
+    /// `rows` numbers.
     pub x: &'a [f64],
     /// Multiple of [`PADDING`].
     pub rows: usize,
-    pub columns: usize,
-    pub count: usize,
 }
 
 impl Products<'_> {
@@ -206,40 +204,19 @@ impl Products<'_> {
         Arch::new().dispatch(self);
     }
 
-    /// `N` columns from `i` with `M` vectors from `j`.
     #[inline(always)]
-    fn tile<S: Simd, const N: usize, const M: usize>(&mut self, s: S, i: usize, j: usize) {
-        let rows = self.rows;
-        let mut sums = [[s.splat_f64s(0.0); N]; M];
-        let a: [&[S::f64s]; N] =
-            std::array::from_fn(|n| S::as_simd_f64s(&self.a[(i + n) * rows..][..rows]).0);
-        let x: [&[S::f64s]; M] =
-            std::array::from_fn(|m| S::as_simd_f64s(&self.x[(j + m) * rows..][..rows]).0);
-        for k in 0..rows / S::F64_LANES {
-            let a: [S::f64s; N] = std::array::from_fn(|n| a[n][k]);
-            for m in 0..M {
-                for n in 0..N {
-                    sums[m][n] = s.mul_add_f64s(a[n], x[m][k], sums[m][n]);
-                }
+    fn tile<S: Simd, const N: usize>(&mut self, s: S, j: usize) {
+        let mut sums = [s.splat_f64s(0.0); N];
+        let (x, _) = S::as_simd_f64s(&self.x[..self.rows]);
+        let columns: [&[S::f64s]; N] =
+            std::array::from_fn(|n| S::as_simd_f64s(&self.a[(j + n) * self.rows..][..self.rows]).0);
+        for (k, &x) in x.iter().enumerate() {
+            for n in 0..N {
+                sums[n] = s.mul_add_f64s(columns[n][k], x, sums[n]);
             }
         }
-        for (m, sums) in sums.iter().enumerate() {
-            for (n, sum) in sums.iter().enumerate() {
-                self.y[(i + n) * self.count + j + m] += s.reduce_sum_f64s(*sum);
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn strip<S: Simd, const N: usize>(&mut self, s: S, i: usize) {
-        let mut j = 0;
-        while j + 4 <= self.count {
-            self.tile::<S, N, 4>(s, i, j);
-            j += 4;
-        }
-        while j < self.count {
-            self.tile::<S, N, 1>(s, i, j);
-            j += 1;
+        for (y, sum) in self.y[j..j + N].iter_mut().zip(sums) {
+            *y += s.reduce_sum_f64s(sum);
         }
     }
 }
@@ -248,14 +225,14 @@ impl WithSimd for Products<'_> {
     type Output = ();
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, s: S) {
-        let mut i = 0;
-        while i + 4 <= self.columns {
-            self.strip::<S, 4>(s, i);
-            i += 4;
+        let (mut j, width) = (0, self.y.len());
+        while j + 4 <= width {
+            self.tile::<S, 4>(s, j);
+            j += 4;
         }
-        while i < self.columns {
-            self.strip::<S, 1>(s, i);
-            i += 1;
+        while j < width {
+            self.tile::<S, 1>(s, j);
+            j += 1;
         }
     }
 }

@@ -24,6 +24,7 @@ mod schedule;
 mod solver;
 mod substitution;
 mod supernodes;
+mod sweep;
 mod tree;
 
 pub use analysis::Analysis;

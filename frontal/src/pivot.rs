@@ -85,7 +85,10 @@ impl Block<'_> {
         pivots: &mut Pivots,
     ) {
         if columns.len() <= PANEL {
-            return Arch::new().dispatch(|| self.lu_panel(columns, exchanges, threshold, pivots));
+            return Arch::new().dispatch(
+                #[inline(always)]
+                || self.lu_panel(columns, exchanges, threshold, pivots),
+            );
         }
         let (begin, middle, end) = halves(columns);
         self.lu_of(begin..middle, exchanges, threshold, pivots);
@@ -137,7 +140,10 @@ impl Block<'_> {
     /// Cholesky of a block on the diagonal, half of its columns at a time.
     fn cholesky_of(&mut self, columns: Range<usize>, pivots: &mut Pivots) -> Result<(), usize> {
         if columns.len() <= PANEL {
-            return Arch::new().dispatch(|| self.cholesky_panel(columns, pivots));
+            return Arch::new().dispatch(
+                #[inline(always)]
+                || self.cholesky_panel(columns, pivots),
+            );
         }
         let (begin, middle, end) = halves(columns);
         self.cholesky_of(begin..middle, pivots)?;

@@ -56,13 +56,16 @@ impl Emitter<'_, '_> {
         let computed =
             entries.iter().flatten().flatten().filter_map(|(name, value)| Some((name, value.as_ref()?)));
         let (names, values): (Vec<_>, Vec<_>) = computed.unzip();
-        let columns = self.kernel.uses.iter().map(|trial| {
+        let columns = self.kernel.uses.iter().filter_map(|trial| {
             let (code, slopes) = self.slopes(tangent, &entries, trial);
+            if slopes.is_empty() {
+                return None;
+            }
             let tests =
                 self.kernel.uses.iter().filter(|test| !tangent.symmetric || test.first >= trial.first);
             let blocks = tests.map(|test| self.add_blocks(tangent.symmetric, &slopes, test, trial));
             let nodes = count(trial.nodes());
-            quote!(for b in 0..#nodes { #code #(#blocks)* })
+            Some(quote!(for b in 0..#nodes { #code #(#blocks)* }))
         });
         quote!(#(let #names = #values;)* #(#columns)*)
     }

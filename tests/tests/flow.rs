@@ -3,6 +3,9 @@
 use ansatz::Error;
 use ansatz::error::Cause;
 use ansatz::generated::Program;
+use ansatz::mesh::structured_rectangle;
+use ansatz::system::{StageProblem, System};
+use ansatz_benches::cavity;
 use ansatz_benches::flow::Flow;
 use ansatz_tests::models::{channel, leaking_box, stretching, vortices};
 use ansatz_tests::notes::Notes;
@@ -87,4 +90,23 @@ fn the_lid_driven_cavity_at_reynolds_1000() {
     assert_close("u", u, -0.42036217908, 1e-9);
     assert_close("v", v, 0.40841488293, 1e-9);
     assert!(level.abs() < 1e-14, "{level:e}");
+}
+
+#[test]
+fn what_newton_does_not_reach_at_once_is_reached_along_a_ramp() {
+    let values = cavity::Parameters::default().values();
+    let mesh = structured_rectangle(16, 16, |s, t| [s, t]);
+    let mut system = System::new(&cavity::PROGRAM, &values, mesh).unwrap();
+    let start = system.start().unwrap();
+    let rates = vec![0.0; start.len()];
+    let problem = StageProblem { time: 0.0, alpha: 0.0, base: &rates };
+    assert!(
+        system.solve_stage(&problem, &mut start.clone()).is_err(),
+        "30 iterations from rest are not enough"
+    );
+    let mut y = start.clone();
+    let report = system.solve_stationary(&problem, &mut y).unwrap();
+    assert!(report.iterations < 30, "{report:?}");
+    // What was found is a solution by itself: from there one iteration is enough.
+    assert!(system.solve_stage(&problem, &mut y).unwrap().iterations <= 1);
 }

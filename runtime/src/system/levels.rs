@@ -124,9 +124,10 @@ impl System {
         let mut shaken = y.to_vec();
         for (field, numbers) in self.program.fields.iter().zip(&self.unknowns.fields) {
             let size = if field.unit == length { 1e-3 * self.cell_size } else { 1.0 };
-            for unknown in numbers.first..numbers.first + numbers.count() {
+            let range = numbers.first..numbers.first + numbers.count();
+            for (unknown, value) in range.clone().zip(&mut shaken[range]) {
                 if self.equations[unknown] != NONE {
-                    shaken[unknown] += size * (unknown as f64).sin();
+                    *value += size * (unknown as f64).sin();
                 }
             }
         }

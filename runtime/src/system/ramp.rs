@@ -12,6 +12,10 @@ use crate::error::SolveError;
 const FIRST: f64 = 0.25;
 /// Smallest step before the ramp is given up.
 const SMALLEST: f64 = 1.0 / 1024.0;
+/// Newton iterations after which a shorter step is better, unless they converge.
+const PATIENCE: usize = 8;
+/// Relative residual to which points on the way are solved.
+const ROUGH: f64 = 1e-3;
 
 /// What is applied so far.
 #[derive(Clone, Debug)]
@@ -35,24 +39,49 @@ impl System {
     /// Solves a stationary problem from the guess `y`: at once, or else along a ramp from the fields' start.
     ///
     /// # Errors
-    /// That of the attempt to solve it at once, if the ramp does not lead to a solution either.
+    /// That of a long attempt to solve it at once, if the ramp does not lead to a solution either.
     pub fn solve_stationary(
         &mut self,
         problem: &StageProblem<'_>,
         y: &mut [f64],
     ) -> Result<NewtonReport, SolveError> {
-        let mut guess = y.to_vec();
-        let solved = self.solve_stage(problem, y).or_else(|at_once| {
-            self.begin_ramp(problem, &mut guess);
-            let ramped = self.climb(problem, &mut guess);
-            self.ramp = None;
-            let report = ramped.ok_or(at_once)?;
-            y.copy_from_slice(&guess);
-            Ok(report)
-        });
-        let report = solved?;
+        let tolerance = self.settings.newton_tolerance;
+        let report = match self.try_stage(problem, y, tolerance) {
+            Ok(report) => report,
+            Err(at_once) => match self.solve_ramped(problem, y) {
+                Some(report) => NewtonReport { iterations: report.iterations + at_once.iterations, ..report },
+                None => self.solve_stage(problem, y)?,
+            },
+        };
         self.settle_levels(problem, y)?;
         Ok(report)
+    }
+
+    /// Solves a stage to a tolerance with little patience; leaves `y` alone where that fails.
+    fn try_stage(
+        &mut self,
+        problem: &StageProblem<'_>,
+        y: &mut [f64],
+        tolerance: f64,
+    ) -> Result<NewtonReport, SolveError> {
+        let settings = self.settings;
+        self.settings.newton_iterations = settings.newton_iterations.min(PATIENCE);
+        self.settings.newton_tolerance = tolerance;
+        let solved = self.solve_stage(problem, y);
+        self.settings = settings;
+        solved
+    }
+
+    /// Goes along a ramp from the fields' start; nothing, and `y` as it was, if there is no way.
+    fn solve_ramped(&mut self, problem: &StageProblem<'_>, y: &mut [f64]) -> Option<NewtonReport> {
+        let mut reached = y.to_vec();
+        self.begin_ramp(problem, &mut reached);
+        let report = self.climb(problem, &mut reached);
+        self.ramp = None;
+        if report.is_some() {
+            y.copy_from_slice(&reached);
+        }
+        report
     }
 
     /// Solves one stage in time from the prediction `y`.
@@ -85,11 +114,11 @@ impl System {
         loop {
             let part = f64::min(reached + step, 1.0);
             self.ramp.as_mut()?.part = part;
-            let mut trial = y.to_vec();
-            match self.solve_stage(problem, &mut trial) {
+            let wanted = self.settings.newton_tolerance;
+            let tolerance = if part < 1.0 { wanted.max(ROUGH) } else { wanted };
+            match self.try_stage(problem, y, tolerance) {
                 Ok(report) => {
                     iterations += report.iterations;
-                    y.copy_from_slice(&trial);
                     (reached, step) = (part, 2.0 * step);
                     if reached >= 1.0 {
                         return Some(NewtonReport { iterations, ..report });

@@ -15,9 +15,9 @@ pub mod assembly;
 pub mod clock;
 pub mod compiler;
 pub mod factorisation;
+pub mod flow;
 #[path = "../../frontal/tests/common/mod.rs"]
 mod matrices;
-pub mod flow;
 pub mod report;
 pub mod solves;
 

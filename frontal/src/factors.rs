@@ -21,6 +21,7 @@ pub struct Factors {
     pub(crate) exchanges: Vec<u32>,
     schedule: Schedule,
     sites: Vec<Site>,
+    /// Right-hand sides in the order of elimination: one, or several side by side.
     pub(crate) work: Vec<f64>,
     pub(crate) rows: Vec<Row>,
 }

@@ -210,10 +210,9 @@ impl AllFactors {
     /// Cholesky if it may and does succeed, else Bunch-Kaufman, else LU.
     fn factor(&mut self, matrix: &ScaledMatrix, expected: Definiteness) -> Result<FactorReport, LinearError> {
         if matrix.pattern().kind() == MatrixKind::Symmetric {
-            if expected == Definiteness::Positive && matrix.has_positive_diagonal() {
-                if let Some(report) = self.cholesky(matrix)? {
-                    return Ok(report);
-                }
+            let attempt = expected == Definiteness::Positive && matrix.has_positive_diagonal();
+            if attempt && let Some(report) = self.cholesky(matrix)? {
+                return Ok(report);
             }
             if let Some(report) = self.bunch_kaufman(matrix)? {
                 return Ok(report);

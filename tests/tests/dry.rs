@@ -135,6 +135,14 @@ fn forces_on_the_nucleus_balance_at_every_step() {
 }
 
 #[test]
+fn a_soft_roof_comes_down_to_the_nucleus() {
+    let parameters = dry_contact::Parameters { G_ecm: 0.1, coarse: 2.0, ..Default::default() };
+    let mut simulation = dry_contact::simulation(&parameters).expect("the model can be built");
+    let outcome = simulation.run(&mut Steps::default(), None).expect("the run reaches its end");
+    assert_eq!(outcome, "roof_contact");
+}
+
+#[test]
 fn tension_follows_the_reference_over_the_whole_run() {
     let text = include_str!("../data/dry_baseline.csv");
     let number = |field: &str| field.parse::<f64>().expect("the file holds numbers");

@@ -61,6 +61,22 @@ pub enum Cause {
     States(String),
 }
 
+impl Cause {
+    /// What to try, where the cause alone does not say it.
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NoConvergence | Self::NotFinite => Some(
+                "try: a smaller load or largest step, a finer mesh at that place, a milder value of a parameter; a body that folds or a law with a \
+                 negative modulus has no solution to be found (docs/language/solve.md)",
+            ),
+            Self::Singular(_) => Some(
+                "is there a `hold` for every body? What may move without any force, or has no equation at all, makes the tangent singular",
+            ),
+            Self::Unstable(_) | Self::Unbalanced(_) | Self::States(_) => None,
+        }
+    }
+}
+
 impl fmt::Display for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -88,7 +104,7 @@ impl fmt::Display for SolveError {
         for (term, value) in &self.terms {
             writeln!(f, "    {term:<40} {value:+.4e}")?;
         }
-        Ok(())
+        self.cause.advice().map_or(Ok(()), |advice| writeln!(f, "  {advice}"))
     }
 }
 

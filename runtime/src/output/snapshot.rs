@@ -35,7 +35,7 @@ pub fn write(path: &Path, snapshot: &Snapshot<'_>) -> Result<(), Error> {
         let (p, u) = (snapshot.grid.points[n as usize], snapshot.displacement[n as usize]);
         [p[0] + u[0], p[1] + u[1]]
     };
-    let view = View::new(snapshot.grid);
+    let view = View::new(snapshot.grid, position);
     let mut canvas = Canvas::new(PICTURE[0], view.height());
     let range = Range::of(snapshot.values);
     for cell in &snapshot.grid.cells {
@@ -52,7 +52,7 @@ pub fn write(path: &Path, snapshot: &Snapshot<'_>) -> Result<(), Error> {
     canvas.write(path)
 }
 
-/// Maps model coordinates to pixels; the reference grid decides, so that a series of pictures keeps its frame.
+/// Maps model coordinates to pixels. The frame holds the body before and after its deformation: a series of pictures keeps it until the body leaves it.
 struct View {
     low: [f64; 2],
     high: [f64; 2],
@@ -60,9 +60,10 @@ struct View {
 }
 
 impl View {
-    fn new(grid: &Grid) -> Self {
+    fn new(grid: &Grid, position: impl Fn(u32) -> [f64; 2]) -> Self {
         let bound = |axis: usize, best: fn(f64, f64) -> f64, start: f64| {
-            grid.points.iter().map(|p| p[axis]).fold(start, best)
+            let both = |(n, p): (usize, &[f64; 2])| best(p[axis], position(n as u32)[axis]);
+            grid.points.iter().enumerate().map(both).fold(start, best)
         };
         let low = [0, 1].map(|a| bound(a, f64::min, f64::INFINITY));
         let high = [0, 1].map(|a| bound(a, f64::max, f64::NEG_INFINITY));

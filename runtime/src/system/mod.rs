@@ -87,6 +87,8 @@ pub struct System {
     indefinite: bool,
     /// Negative pivots of a stable tangent: those of the first stage solved, none unless the model is a saddle point problem.
     stable_pivots: Option<usize>,
+    /// Place of the stabilised tangent that helped last among those that are tried.
+    stabiliser: usize,
     /// Scalar fields whose level nothing fixes; `None` before the first start.
     levels: Option<Vec<Level>>,
     /// What a stationary solution has reached on its way, while it is on one.
@@ -146,6 +148,7 @@ impl System {
             cell_size,
             indefinite: false,
             stable_pivots: None,
+            stabiliser: 0,
             levels: None,
             ramp: None,
         };

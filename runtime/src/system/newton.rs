@@ -203,15 +203,17 @@ impl System {
     }
 
     /// Factors a tangent without unstable modes where the exact one has some: that of a smaller time step, in which rates resist more, or else that
-    /// without the curvature of the contact. None, and the exact tangent's factors, where there is neither.
+    /// without the curvature of the contact. The search starts near what helped last. None, and the exact tangent's factors, where nothing does.
     fn stabilise(&mut self, problem: &StageProblem<'_>, current: &Iterate) -> Result<Option<Balance>, Cause> {
         let (factor, times) = if problem.alpha > 0.0 { DAMPING } else { (1.0, 0) };
         let stiffer = (1..=times).map(|k| (problem.alpha * factor.powi(k as i32), Curvature::Kept));
         let flat = (!self.pairs.is_empty()).then_some((problem.alpha, Curvature::Dropped));
-        for (alpha, curvature) in stiffer.chain(flat) {
+        let first = self.stabiliser.saturating_sub(1);
+        for (k, (alpha, curvature)) in stiffer.chain(flat).enumerate().skip(first) {
             let balance = self.linearise(&current.y, &current.rates, alpha, curvature);
             let negative_pivots = self.factor(&balance)?;
             if self.unstable_modes(negative_pivots) == 0 || curvature == Curvature::Dropped {
+                self.stabiliser = k;
                 return Ok(Some(balance));
             }
         }

@@ -70,7 +70,7 @@ impl System {
     /// Consistent values of all unknowns at the start: fields and fixed states as the model says, functionals evaluated, the other states
     /// from the equations without time derivatives.
     pub fn start(&mut self) -> Result<Vec<f64>, Error> {
-        (self.factored, self.stable_pivots, self.forces) = (None, None, 0.0);
+        (self.factored, self.stable_pivots, self.forces, self.stabiliser) = (None, None, 0.0, 0);
         let time = self.settings.time.map_or(0.0, |(start, _)| start);
         self.g[self.program.layout.time] = time;
         let mut y = vec![0.0; self.unknowns.length];

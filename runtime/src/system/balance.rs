@@ -138,7 +138,7 @@ impl System {
         for term in self.terms.iter_mut().filter(|t| wanted(t.integral.block)) {
             term.add_residual(at, 1.0, &mut residual);
         }
-        for pair in &mut self.pairs {
+        for pair in self.pairs.iter_mut().filter(|pair| pair.acts()) {
             pair.update(&self.mesh, &self.unknowns, at_y);
             pair.add_residual(&self.unknowns, &self.g, &wanted, &mut residual);
         }
@@ -204,7 +204,7 @@ impl System {
         for term in &mut self.terms {
             term.add_tangent(at, 1.0, &mut residual, &mut self.values);
         }
-        for pair in &mut self.pairs {
+        for pair in self.pairs.iter_mut().filter(|pair| pair.acts()) {
             pair.update(&self.mesh, &self.unknowns, y);
             let matrix = (&self.pattern, &self.equations[..]);
             pair.add_tangent(&self.unknowns, &self.g, matrix, curvature, &mut residual, &mut self.values);

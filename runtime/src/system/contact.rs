@@ -90,6 +90,11 @@ impl PairOn {
         })
     }
 
+    /// Whether any law acts on it; else it is only looked at.
+    pub fn acts(&self) -> bool {
+        !self.integrals.is_empty()
+    }
+
     /// Finds the gaps at the displacement in y; does nothing where they are known already.
     pub fn update(&mut self, mesh: &Mesh, unknowns: &Unknowns, y: &[f64]) {
         let field = &unknowns.fields[self.displacement];

@@ -178,7 +178,7 @@ impl System {
         for term in in_the_matrix(&self.terms, &self.functionals) {
             groups.extend(term.elements.element_unknowns());
         }
-        for pair in &mut self.pairs {
+        for pair in self.pairs.iter_mut().filter(|pair| pair.acts()) {
             pair.update(&self.mesh, &self.unknowns, y);
             groups.extend(pair.couplings(&self.unknowns));
         }

@@ -2,7 +2,7 @@
 
 use super::System;
 use super::balance::{Balance, norm};
-use super::contact::Curvature;
+use super::contact::{Curvature, PairOn};
 use crate::error::{Cause, SolveError};
 use crate::solve::linear::{Definiteness, LinearError};
 use std::ops::Range;
@@ -145,7 +145,7 @@ impl System {
         let (balance, direction) = self.direction(problem, progress)?;
         progress.report.iterations += 1;
         let before = norm(&progress.current.residual);
-        let slope = dot(&direction, &balance.residual).abs();
+        let slope = dot(&direction, &balance.residual);
         progress.current = self.search(problem, &progress.current, &direction, slope)?;
         let contraction = norm(&progress.current.residual) / before;
         progress.keep_factors = contraction < CONTRACTION;
@@ -190,7 +190,7 @@ impl System {
     ) -> Result<(Balance, Vec<f64>), Cause> {
         let (alpha, current) = (problem.alpha, &progress.current);
         let mut balance = self.linearise(&current.y, &current.rates, alpha, Curvature::Kept);
-        if self.pairs.iter().any(|pair| !pair.covered()) {
+        if self.pairs.iter().filter(|pair| pair.acts()).any(|pair| !pair.covered()) {
             self.rebuild_pattern(&current.y).map_err(|e| Cause::Singular(e.to_string()))?;
             balance = self.linearise(&current.y, &current.rates, alpha, Curvature::Kept);
         }
@@ -205,9 +205,10 @@ impl System {
     /// Factors a tangent without unstable modes where the exact one has some: that of a smaller time step, in which rates resist more, or else that
     /// without the curvature of the contact. The search starts near what helped last. None, and the exact tangent's factors, where nothing does.
     fn stabilise(&mut self, problem: &StageProblem<'_>, current: &Iterate) -> Result<Option<Balance>, Cause> {
-        let (factor, times) = if problem.alpha > 0.0 { DAMPING } else { (1.0, 0) };
+        let resists = problem.alpha > 0.0 && self.terms.iter().any(|term| term.integral.rates);
+        let (factor, times) = if resists { DAMPING } else { (1.0, 0) };
         let stiffer = (1..=times).map(|k| (problem.alpha * factor.powi(k as i32), Curvature::Kept));
-        let flat = (!self.pairs.is_empty()).then_some((problem.alpha, Curvature::Dropped));
+        let flat = self.pairs.iter().any(PairOn::acts).then_some((problem.alpha, Curvature::Dropped));
         let first = self.stabiliser.saturating_sub(1);
         for (k, (alpha, curvature)) in stiffer.chain(flat).enumerate().skip(first) {
             let balance = self.linearise(&current.y, &current.rates, alpha, curvature);
@@ -254,14 +255,8 @@ impl System {
         moved
     }
 
-    /// What a line search makes small: |du . R|. A symmetric tangent is that of an energy with the slope du . R, so that as long as it is negative the
-    /// energy falls, and only going past its minimum is going too far.
-    fn work(&self, direction: &[f64], trial: &Iterate) -> f64 {
-        let work = dot(direction, &trial.residual);
-        if self.is_symmetric() { work } else { work.abs() }
-    }
-
-    /// Goes along the direction as far as the [work](Self::work) allows.
+    /// Goes along the direction as far as |du . R| falls from its start, `slope`. A symmetric tangent is that of an energy with the slope du . R: going
+    /// down it, the energy falls as long as that is negative, and only going past its minimum is going too far.
     fn search(
         &mut self,
         problem: &StageProblem<'_>,
@@ -269,15 +264,17 @@ impl System {
         direction: &[f64],
         slope: f64,
     ) -> Result<Iterate, Cause> {
+        let downhill = self.is_symmetric() && slope < 0.0;
         let mut length = 1.0;
         let mut best: Option<(f64, Iterate)> = None;
         let mut cause = Cause::NotFinite;
         for _ in 0..=HALVINGS {
             match self.evaluate(problem, self.along(&current.y, direction, length)) {
                 Ok(trial) => {
-                    let work = self.work(direction, &trial);
+                    let work = dot(direction, &trial.residual);
+                    let work = if downhill { work } else { work.abs() };
                     let smaller = norm(&trial.residual) <= norm(&current.residual) * 1e-3;
-                    if work <= DECREASE * slope || smaller {
+                    if work <= DECREASE * slope.abs() || smaller {
                         return Ok(trial);
                     }
                     if best.as_ref().is_none_or(|(least, _)| work < *least) {

@@ -20,16 +20,30 @@ pub struct Outputs {
 
 impl Outputs {
     /// Output of a run that starts at `start` with globals `g`.
-    pub fn new(tables: &'static [Table], frames: &'static [Frames], start: f64, g: &[f64]) -> Self {
-        let schedule = |every: &Every| match every {
-            Every::Step => Schedule::every_step(),
-            Every::Time(period) => Schedule::multiples(period(g), start),
+    ///
+    /// # Errors
+    /// A time between two outputs that is not positive.
+    pub fn new(
+        tables: &'static [Table],
+        frames: &'static [Frames],
+        start: f64,
+        g: &[f64],
+    ) -> Result<Self, Error> {
+        let schedule = |what: &str, every: &Every| match every {
+            Every::Step => Ok(Schedule::every_step()),
+            Every::Time(period) if period(g) > 0.0 => Ok(Schedule::multiples(period(g), start)),
+            Every::Time(period) => Err(Error::Model(format!(
+                "{what} would be written every {}: give a time above zero, as in `every 0.5 s`, or write `every step`",
+                period(g)
+            ))),
         };
-        Self {
+        let of_table = |table: &Table| schedule(&format!("the table `{}`", table.file), &table.every);
+        let of_frames = |frames: &Frames| schedule("a field frame", &frames.every);
+        Ok(Self {
             tables,
-            table_schedules: tables.iter().map(|table| schedule(&table.every)).collect(),
-            frame_schedules: frames.iter().map(|frames| schedule(&frames.every)).collect(),
-        }
+            table_schedules: tables.iter().map(of_table).collect::<Result<_, _>>()?,
+            frame_schedules: frames.iter().map(of_frames).collect::<Result<_, _>>()?,
+        })
     }
 
     /// Writes what is due up to the last recorded point. `point` gives unknowns and rates at a time inside the last step.

@@ -44,7 +44,7 @@ pub fn run(
     let globals = system.observe(march.last());
     let mut run = Run {
         watcher: Watcher::new(plan.events, start, &globals),
-        outputs: Outputs::new(plan.tables, plan.frames, start, &globals),
+        outputs: Outputs::new(plan.tables, plan.frames, start, &globals)?,
         record: RunRecord::new(plan.events),
         system,
         march,
@@ -78,7 +78,7 @@ fn stationary(
     let globals = system.observe(&point);
     observer.step(&Step { number: 1, time: 0.0, size: 0.0, iterations, globals: &globals })?;
     let mut record = RunRecord::new(plan.events);
-    let mut outputs = Outputs::new(plan.tables, plan.frames, 0.0, &globals);
+    let mut outputs = Outputs::new(plan.tables, plan.frames, 0.0, &globals)?;
     record.begin_stretch(0.0, globals);
     record.count(Statistics { accepted: 1, rejected: 0, iterations });
     outputs.emit(system, &record, |_| point.clone(), observer)?;

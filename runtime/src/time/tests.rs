@@ -377,6 +377,15 @@ static TABLES: [Table; 1] = [Table {
 }];
 
 #[test]
+fn output_needs_time_between() {
+    static AT_ONCE: [Table; 1] = [Table { file: "a.csv", every: Every::Time(|_| 0.0), columns: &[] }];
+    let with_table = Plan { tables: &AT_ONCE, ..plan(settings(6.0, 1e-4, 0.5), &[]) };
+    let failed = run(&mut oscillator(), with_table, vec![1.0, 0.0], &mut Notes::default()).err();
+    let message = failed.map(|error| error.to_string()).unwrap_or_default();
+    assert!(message.contains("`a.csv`") && message.contains("every step"), "{message}");
+}
+
+#[test]
 fn rows_come_on_time_with_balances_kept() {
     let with_table = Plan { tables: &TABLES, ..plan(settings(6.0, 1e-4, 0.5), &[]) };
     let (_, notes) = run_small(&mut oscillator(), with_table, &[1.0, 0.0]);

@@ -29,6 +29,8 @@ impl Element {
     /// Every element.
     pub const ALL: &[&Element] = &[&p1::SEGMENT, &p1::TRIANGLE, &p2::SEGMENT, &p2::TRIANGLE];
 
+    /// Linear segment.
+    pub const P1_SEGMENT: &'static Element = &p1::SEGMENT;
     /// Linear triangle.
     pub const P1_TRIANGLE: &'static Element = &p1::TRIANGLE;
     /// Quadratic segment.

@@ -122,13 +122,15 @@ pub struct Parameter {
     pub choices: fn(g: &[f64]) -> Option<Vec<f64>>,
 }
 
-/// Cells of regions or edges of paths, by name as the mesh knows them.
+/// Cells of regions, edges of paths or their ends, by name as the mesh knows them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Domain {
     /// Cells of these regions.
     Cells(&'static [&'static str]),
     /// Edges of these paths (`nucleus`) or segments (`nucleus.pull`); `axis` for the symmetry axis.
     Edges(&'static [&'static str]),
+    /// First and last points of paths: `membrane.start`, `membrane.end`.
+    Ends(&'static [&'static str]),
 }
 
 /// Reference measure of a domain.
@@ -147,7 +149,7 @@ pub enum Space {
     P2,
 }
 
-/// A field: `components` unknowns per node of its space on its regions.
+/// A field: `components` unknowns per node of its space on its domains.
 #[allow(missing_docs)]
 pub struct Field {
     pub name: &'static str,
@@ -155,7 +157,8 @@ pub struct Field {
     /// Suffix of each component for messages, such as `r`, `z`.
     pub component_names: &'static [&'static str],
     pub space: Space,
-    pub regions: &'static [&'static str],
+    /// Cells and edges on which it lives.
+    pub domains: &'static [Domain],
     /// Display unit.
     pub unit: &'static str,
     /// Start value of each component at a reference point.
@@ -265,9 +268,20 @@ pub enum FunctionalKind {
     Point {
         /// The reference point.
         at: fn(g: &[f64]) -> [f64; 2],
+        /// Cells or edges, one of which has the point.
+        domain: Domain,
         /// `out[0]` value, `out[1 + i]` derivative by input i.
         function: PointFunction,
     },
+}
+
+/// A derivative in space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Derivative {
+    /// In reference direction 0 or 1.
+    Direction(usize),
+    /// By the arc length of the path through the point, in its direction.
+    Along,
 }
 
 /// What a pointwise function reads of a field at a point.
@@ -277,8 +291,8 @@ pub struct PointInput {
     pub field: usize,
     /// Component of the field.
     pub component: usize,
-    /// Value, or derivative in reference direction 0 or 1.
-    pub derivative: Option<usize>,
+    /// Derivative; none for the value.
+    pub derivative: Option<Derivative>,
     /// Of the time derivative instead of the value.
     pub rate: bool,
 }
@@ -401,7 +415,7 @@ pub enum ObservableKind {
     /// Largest value over the nodes of a domain.
     Max(Domain, PointFunction),
     /// Value at a reference point.
-    Point(fn(g: &[f64]) -> [f64; 2], PointFunction),
+    Point(fn(g: &[f64]) -> [f64; 2], Domain, PointFunction),
     /// Smallest f(gap) over the quadrature points of a pair (first side, or both); f is applied to the gap at each point;
     /// points without a partner within the search distance count as a gap of that distance.
     PairMin(usize, fn(gap: f64, g: &[f64]) -> f64),
@@ -510,10 +524,10 @@ pub struct Table {
     pub columns: &'static [Column],
 }
 
-/// Fields on regions over time; values at nodes, averaged between cells of one region's side where they jump.
+/// Fields on regions or paths over time; values at nodes, averaged between cells of one region's side where they jump.
 pub struct Frames {
-    /// Regions.
-    pub regions: &'static [&'static str],
+    /// Cells or edges.
+    pub domain: Domain,
     /// When.
     pub every: Every,
     /// Columns: name, unit, internal value of one unit, number of components (1, 3 or 9).

@@ -140,6 +140,6 @@ impl ImplicitSystem for Discretised {
 
     fn sample(&mut self, frame: usize, point: &Point, g: &[f64]) -> Vec<Vec<f64>> {
         let at = At { y: &point.values, rates: &point.rates, g, alpha: 0.0 };
-        self.frames[frame].sample(&self.system.mesh, &self.system.unknowns, at)
+        self.frames[frame].sample(&self.system.unknowns, at)
     }
 }

@@ -9,11 +9,12 @@ ansatz::include_model!("../models/stretching.ansatz");
 ansatz::include_model!("../models/vortices.ansatz");
 ansatz::include_model!("../models/leaking_box.ansatz");
 ansatz::include_model!("../models/named_axis.ansatz");
+ansatz::include_model!("../models/whisker.ansatz");
 
 use ansatz::generated::Program;
 
 /// All of them.
-pub static PROGRAMS: [&Program; 9] = [
+pub static PROGRAMS: [&Program; 10] = [
     &patch_plane::PROGRAM,
     &patch_axi::PROGRAM,
     &crushed::PROGRAM,
@@ -23,4 +24,5 @@ pub static PROGRAMS: [&Program; 9] = [
     &stretching::PROGRAM,
     &vortices::PROGRAM,
     &leaking_box::PROGRAM,
+    &whisker::PROGRAM,
 ];

@@ -1,26 +1,22 @@
-//! Which regions a domain belongs to: cells are in one, edges bound one or two.
+//! Where things live: cells are in one region, edges bound one or two, or none where only a field lives on their path.
 
-use crate::model::{Domain, Model, PairId, PathId, Piece, RegionId};
-
-impl Domain {
-    /// The regions among the pieces.
-    pub(super) fn regions(&self) -> Vec<RegionId> {
-        let regions = self.pieces.iter().filter_map(|piece| match piece {
-            Piece::Region(id) => Some(*id),
-            _ => None,
-        });
-        regions.collect()
-    }
-}
+use crate::model::{Domain, Field, Model, PairId, PathId, Piece, RegionId};
 
 impl Model {
     /// The first piece of a domain that is none of these regions, nor bounds one.
-    pub(super) fn uncovered(&self, domain: &Domain, regions: &[RegionId]) -> Option<Piece> {
+    pub(crate) fn uncovered(&self, domain: &Domain, regions: &[RegionId]) -> Option<Piece> {
+        let carriers: Vec<Piece> = regions.iter().map(|region| Piece::Region(*region)).collect();
+        self.beyond(domain, &carriers)
+    }
+
+    /// The first piece of a domain on which a field does not live; a field whose own domain is faulty says nothing.
+    pub(crate) fn without(&self, field: &Field, domain: &Domain) -> Option<Piece> {
+        if field.domain.pieces.is_empty() { None } else { self.beyond(domain, &field.domain.pieces) }
+    }
+
+    fn beyond(&self, domain: &Domain, carriers: &[Piece]) -> Option<Piece> {
         let simple = domain.pieces.iter().flat_map(|piece| self.surfaces(*piece));
-        simple.into_iter().find(|piece| match piece {
-            Piece::Region(id) => !regions.contains(id),
-            edge => !regions.iter().any(|id| self.bounds(*id, *edge)),
-        })
+        simple.into_iter().find(|piece| !carriers.iter().any(|carrier| self.carries(*carrier, *piece)))
     }
 
     /// A contact piece as its surfaces, a path as its segments where only those bound regions.
@@ -41,6 +37,21 @@ impl Model {
 
     fn segments(&self, path: PathId) -> Vec<Piece> {
         (0..self.geometry.paths[path.0].segments.len()).map(|at| Piece::Segment(path, at)).collect()
+    }
+
+    /// Whether what lives on `carrier` has values on `piece`, which is no whole path.
+    fn carries(&self, carrier: Piece, piece: Piece) -> bool {
+        match (carrier, piece) {
+            (Piece::Region(a), Piece::Region(b)) => a == b,
+            (_, Piece::Start(path)) => self.carries(carrier, Piece::Segment(path, 0)),
+            (_, Piece::End(path)) => {
+                let last = self.geometry.paths[path.0].segments.len().saturating_sub(1);
+                self.carries(carrier, Piece::Segment(path, last))
+            }
+            (Piece::Region(region), edge) => self.bounds(region, edge),
+            (Piece::Path(p), Piece::Segment(q, _)) => p == q,
+            (a, b) => a == b,
+        }
     }
 
     /// Whether an edge is on the boundary of a region; a region whose loop is faulty says nothing.

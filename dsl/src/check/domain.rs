@@ -16,6 +16,8 @@ pub(crate) enum Kind {
     Cells,
     /// Edges of paths.
     Edges,
+    /// First or last points of paths.
+    Ends,
     /// A contact pair or its first side.
     Contact,
 }
@@ -26,6 +28,7 @@ impl Kind {
         match piece {
             Piece::Region(_) => Self::Cells,
             Piece::Path(_) | Piece::Segment(..) | Piece::Axis => Self::Edges,
+            Piece::Start(_) | Piece::End(_) => Self::Ends,
             Piece::First(_) | Piece::Pair(_) => Self::Contact,
         }
     }
@@ -35,6 +38,7 @@ impl Kind {
         match self {
             Self::Cells => Dimension::LENGTH.pow(3),
             Self::Edges | Self::Contact => Dimension::LENGTH.pow(2),
+            Self::Ends => Dimension::LENGTH,
         }
     }
 
@@ -42,6 +46,7 @@ impl Kind {
         match self {
             Self::Cells => "this is a region",
             Self::Edges => "this is a path",
+            Self::Ends => "this is an end of a path",
             Self::Contact => "this is a contact pair",
         }
     }
@@ -53,8 +58,24 @@ pub(crate) fn kind(domain: &Domain) -> Kind {
 }
 
 impl Checker<'_> {
-    /// The domain that an expression names; its pieces are all cells, all edges or all contact.
+    /// The domain that an expression names, over which one can integrate; its pieces are all cells, all edges or all contact.
     pub(super) fn domain(&mut self, e: &ast::Expr, env: &Env) -> Checked<Domain> {
+        let domain = self.places(e, env)?;
+        if kind(&domain) == Kind::Ends {
+            return Err(self.report(
+                Diagnostic::error(
+                    Code::NotOnDomain,
+                    e.span,
+                    "an end of a path is a point, which has no area",
+                )
+                .help("`hold` and mesh sizes stand there; the value at a point is `e@(x, y)`"),
+            ));
+        }
+        Ok(domain)
+    }
+
+    /// The places that an expression names: a domain, or ends of paths.
+    pub(super) fn places(&mut self, e: &ast::Expr, env: &Env) -> Checked<Domain> {
         let mut pieces = Vec::new();
         self.pieces(e, env, &mut pieces)?;
         let first = pieces.first().copied();
@@ -70,13 +91,21 @@ impl Checker<'_> {
                 ));
             }
         }
-        let mut pieces: Vec<Piece> = pieces.into_iter().map(|(piece, _)| piece).collect();
-        let whole = pieces.clone();
-        pieces
-            .retain(|piece| !matches!(piece, Piece::Segment(path, _) if whole.contains(&Piece::Path(*path))));
-        pieces.sort_unstable();
-        pieces.dedup();
-        Ok(Domain { pieces, span: e.span })
+        Ok(joined(pieces, e.span))
+    }
+
+    /// The regions and paths on which a field lives.
+    pub(super) fn carrier(&mut self, e: &ast::Expr) -> Checked<Domain> {
+        let mut pieces = Vec::new();
+        self.pieces(e, &Env::default(), &mut pieces)?;
+        let carries = |piece: &Piece| matches!(Kind::of(*piece), Kind::Cells | Kind::Edges);
+        match pieces.iter().find(|(piece, _)| !carries(piece)) {
+            None => Ok(joined(pieces, e.span)),
+            Some((piece, span)) => Err(self.report(
+                Diagnostic::error(Code::NotOnDomain, *span, "a field lives on regions and paths")
+                    .here(Kind::of(*piece).words()),
+            )),
+        }
     }
 
     fn pieces(&mut self, e: &ast::Expr, env: &Env, into: &mut Vec<(Piece, Span)>) -> Checked<()> {
@@ -203,6 +232,15 @@ impl Checker<'_> {
         if into.len() > before {
             return Ok(());
         }
+        let end = match label.text.as_str() {
+            "start" => Some(Piece::Start(path)),
+            "end" => Some(Piece::End(path)),
+            _ => None,
+        };
+        if let Some(end) = end {
+            into.push((end, span));
+            return Ok(());
+        }
         let known: Vec<&str> = labels.iter().flatten().map(String::as_str).collect();
         let message = format!("path `{}` has no label `{}`", self.geometry.paths[path.0].name, label.text);
         let mut diagnostic = Diagnostic::error(Code::UnknownMember, label.span, message)
@@ -250,6 +288,16 @@ impl Checker<'_> {
     }
 }
 
+/// A domain of these pieces, each once, in ascending order; the labels of a path that is there as a whole say nothing more.
+fn joined(pieces: Vec<(Piece, Span)>, span: Span) -> Domain {
+    let mut pieces: Vec<Piece> = pieces.into_iter().map(|(piece, _)| piece).collect();
+    let whole = pieces.clone();
+    pieces.retain(|piece| !matches!(piece, Piece::Segment(path, _) if whole.contains(&Piece::Path(*path))));
+    pieces.sort_unstable();
+    pieces.dedup();
+    Domain { pieces, span }
+}
+
 /// A piece by its names.
 pub(crate) fn piece_words(geometry: &crate::model::Geometry, pairs: &[Pair], piece: Piece) -> String {
     match piece {
@@ -264,6 +312,8 @@ pub(crate) fn piece_words(geometry: &crate::model::Geometry, pairs: &[Pair], pie
             }
         }
         Piece::Axis => "`axis`".into(),
+        Piece::Start(id) => format!("`{}.start`", geometry.paths[id.0].name),
+        Piece::End(id) => format!("`{}.end`", geometry.paths[id.0].name),
         Piece::First(id) => format!("`{}.first`", pairs[id.0].name),
         Piece::Pair(id) => format!("`{}`", pairs[id.0].name),
     }

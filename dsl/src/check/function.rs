@@ -44,7 +44,7 @@ impl Checker<'_> {
             return self.pair(&ast.name, args, ast.value.span).map(Meaning::Pair);
         }
         if self.names_places(&ast.value, &env, 0) {
-            return self.domain(&ast.value, &env).map(Meaning::Domain);
+            return self.places(&ast.value, &env).map(Meaning::Domain);
         }
         let value = self.let_value_of(ast, &env)?;
         Ok(Meaning::Value(self.value(&ast.name, docs, value)))

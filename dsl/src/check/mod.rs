@@ -31,7 +31,7 @@ mod test;
 mod types;
 pub(crate) mod unit;
 mod unknown;
-mod walk;
+pub(crate) mod walk;
 mod work;
 
 use crate::diagnostic::{Diagnostic, Sink};

@@ -176,7 +176,7 @@ impl Checker<'_> {
         env: &Env,
     ) -> Checked<StatementKind> {
         let (quantity, held) = (self.settled(quantity, env), self.expr(held, env));
-        let domain = self.on(domain, env);
+        let domain = domain.map(|domain| self.places(domain, env)).transpose();
         let quantity = quantity?;
         let (field, component) = self.held_field(&quantity)?;
         let held = self.expect(held?, &quantity.ty, "the held value")?;
@@ -234,6 +234,7 @@ fn measured_words(domain: &Domain) -> &'static str {
     match domain::kind(domain) {
         domain::Kind::Cells => "integrated over a volume",
         domain::Kind::Edges | domain::Kind::Contact => "integrated over an area",
+        domain::Kind::Ends => "at points",
     }
 }
 

@@ -370,11 +370,7 @@ impl<'m> Placer<'m, '_> {
     }
 
     fn field_on(&mut self, field: &Field, domain: &Domain, place: Span, inner: Option<Span>) {
-        let regions = field.domain.regions();
-        if regions.is_empty() {
-            return;
-        }
-        if let Some(piece) = self.model.uncovered(domain, &regions) {
+        if let Some(piece) = self.model.without(field, domain) {
             let message = format!("field `{}` does not exist on {}", field.name, self.piece(piece));
             self.missing(place, inner.unwrap_or(place), domain, message);
         }

@@ -25,7 +25,7 @@ impl Checker<'_> {
         let value = self
             .setting_value(setting)
             .and_then(|e| self.typed(e, &ty, &setting_words(setting), &Env::default()));
-        let domain = setting.domain.as_ref().map(|domain| self.domain(domain, &Env::default())).transpose();
+        let domain = setting.domain.as_ref().map(|domain| self.places(domain, &Env::default())).transpose();
         let (value, domain) = (value?, domain?);
         if name == "size" {
             self.rest.mesh.sizes.push((value, domain));

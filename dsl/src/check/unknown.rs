@@ -1,7 +1,7 @@
 //! Fields and states: the unknowns, their domains and starts.
 
 use super::shape::value;
-use super::{Checked, Checker, Declared, Env, Reported, Slot, domain};
+use super::{Checked, Checker, Declared, Env, Reported, Slot};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::model::{Domain, Field, FieldId, Shape, Space, Start, State, StateId, Type};
 use crate::syntax::ast;
@@ -56,19 +56,11 @@ impl Checker<'_> {
     pub(super) fn field(&mut self, at: usize) {
         let Declared { docs, ast, .. } = self.fields[at];
         let ty = self.field_type(FieldId(at));
-        let domain = self.domain(&ast.domain, &Env::default());
+        let domain = self.carrier(&ast.domain);
         let start = self.start(ast.start.as_ref(), ty.as_ref().ok(), &ast.name);
         let space = self.space(&ast.space);
         let (shape, dimension) =
             ty.as_ref().ok().and_then(value).unwrap_or((Shape::Scalar, Dimension::NUMBER));
-        let domain = domain.and_then(|domain| match domain::kind(&domain) {
-            domain::Kind::Cells => Ok(domain),
-            _ => Err(self.report(Diagnostic::error(
-                Code::Unsupported,
-                ast.domain.span,
-                "fields on paths are not supported",
-            ))),
-        });
         self.rest.fields.push(Field {
             name: ast.name.text.clone(),
             doc: docs.to_owned(),

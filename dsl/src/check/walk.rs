@@ -42,7 +42,7 @@ impl Definition {
 }
 
 /// Calls `f` on `e` and everything that it is made of, definitions included, each definition once.
-pub(super) fn deep<'m>(model: &'m Model, e: &'m Expr, f: &mut dyn FnMut(&'m Expr)) {
+pub(crate) fn deep<'m>(model: &'m Model, e: &'m Expr, f: &mut dyn FnMut(&'m Expr)) {
     walk(model, e, &mut BTreeSet::new(), f);
 }
 

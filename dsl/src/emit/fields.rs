@@ -17,6 +17,7 @@ pub fn domain(model: &Model, region: &Region) -> TokenStream {
     match region {
         Region::Cells(_) => quote!(Domain::Cells(&[#(#names),*])),
         Region::Edges(_) => quote!(Domain::Edges(&[#(#names),*])),
+        Region::Ends(_) => quote!(Domain::Ends(&[#(#names),*])),
     }
 }
 
@@ -31,15 +32,15 @@ pub fn fields(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
         };
         let components = Literal::usize_unsuffixed(names.len());
         let space = if field.space == Space::P1 { quote!(Space::P1) } else { quote!(Space::P2) };
-        let regions =
-            Region::of(&field.domain).map(|region| region_names(model, &region)).unwrap_or_default();
+        let parts = Region::parts(&field.domain).into_iter().map(|part| domain(model, &part));
+        let parts: Vec<TokenStream> = parts.collect();
         let start = at_point(&mut forms.lowering, slots, start, true);
         quote!(Field {
             name: #name,
             components: #components,
             component_names: &[#(#names),*],
             space: #space,
-            regions: &[#(#regions),*],
+            domains: &[#(#parts),*],
             unit: #unit,
             start: #start,
         })
@@ -150,7 +151,7 @@ pub fn point_function(lowering: &mut Lowering<'_>, slots: &Slots, form: &PointFo
     let inputs = form.inputs.iter().map(|one| {
         let [field, component] = [one.input.field.0, one.input.component].map(Literal::usize_unsuffixed);
         let derivative = match one.input.derivative.map(Literal::usize_unsuffixed) {
-            Some(direction) => quote!(Some(#direction)),
+            Some(direction) => quote!(Some(Derivative::Direction(#direction))),
             None => quote!(None),
         };
         let rate = one.rate;
@@ -162,7 +163,7 @@ pub fn point_function(lowering: &mut Lowering<'_>, slots: &Slots, form: &PointFo
     let reads_table = reads(lowering, &all, |kind| matches!(kind, SymbolKind::Table(_)));
     let regions = match &form.region {
         Region::Cells(_) => region_names(model, &form.region),
-        Region::Edges(_) => Vec::new(),
+        Region::Edges(_) | Region::Ends(_) => Vec::new(),
     };
     let region = quote!(region);
     let sources = Sources { inputs: &kinds, region: Some(&region) };

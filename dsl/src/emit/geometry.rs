@@ -113,6 +113,14 @@ fn place(model: &Model, piece: Piece) -> TokenStream {
     let name = piece_name(model, piece);
     match piece {
         Piece::Region(_) => quote!(Place::Region(#name.into())),
+        Piece::Start(path) => {
+            let path = &model.geometry.paths[path.0].name;
+            quote!(Place::Start(#path.into()))
+        }
+        Piece::End(path) => {
+            let path = &model.geometry.paths[path.0].name;
+            quote!(Place::End(#path.into()))
+        }
         Piece::Segment(path, _) => {
             let (path, label) =
                 (&model.geometry.paths[path.0].name, name.rsplit('.').next().unwrap_or_default());

@@ -39,7 +39,8 @@ pub fn functionals(
             FunctionalKind::Point(at, form) => {
                 let at = list(&mut forms.lowering, slots, at, &|values| quote!([#(#values),*]));
                 let function = point_function(&mut forms.lowering, slots, form);
-                quote!(FunctionalKind::Point { at: #at, function: #function })
+                let domain = domain(forms.lowering.model, &form.region);
+                quote!(FunctionalKind::Point { at: #at, domain: #domain, function: #function })
             }
         };
         quote!(Functional { name: #name, unit: #unit, kind: #kind })
@@ -100,7 +101,8 @@ fn observable(
         QuantityKind::Point(at, region, values) => {
             let at = list(lowering, slots, at, &|values| quote!([#(#values),*]));
             let function = values_at_points(lowering, slots, region, values);
-            quote!(ObservableKind::Point(#at, #function))
+            let domain = domain(model, region);
+            quote!(ObservableKind::Point(#at, #domain, #function))
         }
         QuantityKind::PairExtreme(reduction, pair, value) => {
             let pair = Literal::usize_unsuffixed(pair.0);
@@ -212,8 +214,7 @@ pub fn frames(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
 }
 
 fn one_frames(lowering: &mut Lowering<'_>, slots: &Slots, frames: &Frames) -> TokenStream {
-    let (regions, every) =
-        (region_names(lowering.model, &frames.region), every(lowering, slots, &frames.every));
+    let (domain, every) = (domain(lowering.model, &frames.region), every(lowering, slots, &frames.every));
     let columns = frames.columns.iter().map(|column| {
         let (name, (value, unit)) = (&column.name, &column.unit);
         let (unit_value, [components, offset]) = (number(*value), [column.components, column.offset].map(Literal::usize_unsuffixed));
@@ -221,5 +222,5 @@ fn one_frames(lowering: &mut Lowering<'_>, slots: &Slots, frames: &Frames) -> To
     });
     let columns: Vec<TokenStream> = columns.collect();
     let function = point_function(lowering, slots, &frames.function);
-    quote!(Frames { regions: &[#(#regions),*], every: #every, columns: &[#(#columns),*], function: #function })
+    quote!(Frames { domain: #domain, every: #every, columns: &[#(#columns),*], function: #function })
 }

@@ -207,10 +207,8 @@ fn lower_frames<'m>(
     frames: &'m crate::model::Frames,
 ) -> Lowered<Frames> {
     let span = frames.domain.span;
-    let region = match Region::of(&frames.domain) {
-        Some(region @ Region::Cells(_)) => region,
-        _ => return Err(unsupported(span, "`fields` are written on regions")),
-    };
+    let region = Region::of(&frames.domain)
+        .ok_or_else(|| unsupported(span, "`fields` are written on regions or on paths"))?;
     let parts = lowering.on_parts(&region, |lowering| {
         let mut columns = Vec::new();
         for column in &frames.columns {
@@ -251,11 +249,17 @@ fn field_start(lowering: &mut Lowering<'_>, field: FieldId) -> Lowered<Vec<Id>> 
         return Ok(vec![lowering.pool.zero(); stored.len()]);
     };
     let span = value.span;
-    let region = Region::of(&definition.domain)
-        .ok_or_else(|| unsupported(definition.span, "a field lives on regions"))?;
-    let parts = lowering.on_parts(&region, |lowering| lowering.components_here(value))?;
+    let mut parts = Vec::new();
+    for region in Region::parts(&definition.domain) {
+        parts.extend(lowering.on_parts(&region, |lowering| lowering.components_here(value))?);
+    }
     let components = match parts.as_slice() {
-        [(_, components)] if components.iter().all(|&c| same_everywhere(lowering, c)) => components.clone(),
+        [(_, components), rest @ ..]
+            if rest.iter().all(|(_, others)| others == components)
+                && components.iter().all(|&c| same_everywhere(lowering, c)) =>
+        {
+            components.clone()
+        }
         _ => return Err(unsupported(span, "a start value cannot depend on the region or on unknowns")),
     };
     Ok(stored.iter().map(|&axis| components.get(axis).copied().unwrap_or(components[0])).collect())

@@ -340,6 +340,9 @@ impl<'m> Lowering<'m> {
             }
         };
         let mut values = Vec::new();
+        if let (true, Some(otherwise)) = (regions.is_empty(), otherwise) {
+            return self.expr(otherwise);
+        }
         for region in &regions {
             let arm = arms.iter().find(|(r, _)| r == region).map(|(_, arm)| arm).or(otherwise);
             let arm = arm.ok_or_else(|| {
@@ -356,7 +359,9 @@ impl<'m> Lowering<'m> {
     /// One value for all regions: itself if they agree, a table if they are numbers, else the domain has to be split.
     fn by_region(&mut self, values: Vec<Value>, span: Span) -> Lowered<Value> {
         let components: Vec<Vec<Id>> = values.iter().map(|value| value.components(&mut self.pool)).collect();
-        let Some(first) = values.first() else { return Err(internal(span, "a point outside all regions")) };
+        let Some(first) = values.first() else {
+            return Err(unsupported(span, "no region lies beside this path"));
+        };
         if components.iter().all(|c| *c == components[0]) && !components[0].is_empty() {
             return Ok(first.clone());
         }
@@ -396,6 +401,9 @@ impl<'m> Lowering<'m> {
     /// The regions that the paths and segments bound; the axis bounds those that name it.
     pub(super) fn bounded_by(&self, pieces: &[Piece]) -> Vec<RegionId> {
         let part_of = |piece: &Piece, boundary: &Piece| match (piece, boundary) {
+            (Piece::Start(path) | Piece::End(path), Piece::Path(whole) | Piece::Segment(whole, _)) => {
+                path == whole
+            }
             (Piece::Segment(path, _), Piece::Path(whole)) | (Piece::Path(whole), Piece::Segment(path, _)) => {
                 path == whole
             }

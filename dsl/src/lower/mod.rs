@@ -235,7 +235,7 @@ impl<'m> Lowering<'m> {
     fn place_of(&self, region: &Region) -> Place {
         match region {
             Region::Cells(regions) => Place::Cells(regions.clone()),
-            Region::Edges(pieces) => Place::Edges(self.bounded_by(pieces)),
+            Region::Edges(pieces) | Region::Ends(pieces) => Place::Edges(self.bounded_by(pieces)),
         }
     }
 }

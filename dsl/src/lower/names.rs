@@ -53,7 +53,9 @@ pub fn symbol_name(lowering: &Lowering<'_>, kind: SymbolKind) -> String {
 pub fn region_names(model: &Model, region: &Region) -> Vec<String> {
     match region {
         Region::Cells(regions) => regions.iter().map(|r| model.geometry.regions[r.0].name.clone()).collect(),
-        Region::Edges(pieces) => pieces.iter().map(|&piece| piece_name(model, piece)).collect(),
+        Region::Edges(pieces) | Region::Ends(pieces) => {
+            pieces.iter().map(|&piece| piece_name(model, piece)).collect()
+        }
     }
 }
 
@@ -70,6 +72,8 @@ pub fn piece_name(model: &Model, piece: Piece) -> String {
             }
         }
         Piece::Axis => String::from("axis"),
+        Piece::Start(path) => format!("{}.start", model.geometry.paths[path.0].name),
+        Piece::End(path) => format!("{}.end", model.geometry.paths[path.0].name),
         Piece::First(pair) | Piece::Pair(pair) => model.pairs[pair.0].name.clone(),
     }
 }

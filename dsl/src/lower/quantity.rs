@@ -1,6 +1,6 @@
 //! Scalars made from whole fields: means, integrals, extremes, values at a point, resultants. Equal ones are one.
 
-use crate::model::{BlockId, Domain, FieldId, PairId, PathId, Piece, Reduction, RegionId};
+use crate::model::{BlockId, Domain, FieldId, PairId, Piece, Reduction, RegionId};
 use crate::scalar::Id;
 use crate::source::Span;
 use ansatz_units::Dimension;
@@ -53,27 +53,45 @@ pub struct Part {
     pub density: Id,
 }
 
-/// Cells or edges, as emitted code lists them.
+/// Cells, edges or points, as emitted code lists them.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Region {
     /// Cells of regions, ascending.
     Cells(Vec<RegionId>),
     /// Edges of paths and segments, ascending.
     Edges(Vec<Piece>),
+    /// First and last points of paths, ascending.
+    Ends(Vec<Piece>),
 }
 
 impl Region {
-    /// Cells or edges of a domain; `None` for contact pairs and mixtures, which checked models exclude.
+    /// Cells, edges or ends of a domain; `None` for contact pairs and mixtures.
     pub fn of(domain: &Domain) -> Option<Region> {
-        let cells: Vec<RegionId> = domain
-            .pieces
-            .iter()
-            .filter_map(|piece| if let Piece::Region(region) = piece { Some(*region) } else { None })
-            .collect();
-        if cells.len() == domain.pieces.len() {
-            return Some(Region::Cells(cells));
+        match Region::parts(domain).as_slice() {
+            [one] => Some(one.clone()),
+            _ => None,
         }
-        let edge = |piece: &Piece| matches!(piece, Piece::Path(PathId(_)) | Piece::Segment(..) | Piece::Axis);
-        domain.pieces.iter().all(edge).then(|| Region::Edges(domain.pieces.clone()))
+    }
+
+    /// The cells, the edges and the ends of a domain, as far as there are any; nothing for contact pairs.
+    pub fn parts(domain: &Domain) -> Vec<Region> {
+        let pieces = |wanted: fn(&Piece) -> bool| -> Vec<Piece> {
+            domain.pieces.iter().copied().filter(wanted).collect()
+        };
+        let cells = domain.pieces.iter().filter_map(|piece| match piece {
+            Piece::Region(region) => Some(*region),
+            _ => None,
+        });
+        let edges = pieces(|piece| matches!(piece, Piece::Path(_) | Piece::Segment(..) | Piece::Axis));
+        let ends = pieces(|piece| matches!(piece, Piece::Start(_) | Piece::End(_)));
+        let parts = [Region::Cells(cells.collect()), Region::Edges(edges), Region::Ends(ends)];
+        parts.into_iter().filter(|part| !part.is_empty()).collect()
+    }
+
+    fn is_empty(&self) -> bool {
+        match self {
+            Region::Cells(regions) => regions.is_empty(),
+            Region::Edges(pieces) | Region::Ends(pieces) => pieces.is_empty(),
+        }
     }
 }

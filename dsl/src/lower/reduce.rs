@@ -3,10 +3,12 @@
 use super::{
     Lowered, Lowering, Part, Place, Quantity, QuantityKind, Region, SymbolKind, Value, internal, unsupported,
 };
+use crate::check::walk::deep;
 use crate::model::{Domain, EventId, Expr, ExprKind, FieldId, Piece, Reduction, RegionId, Shape, Type};
 use crate::scalar::Id;
 use crate::source::Span;
 use ansatz_units::Dimension;
+use std::collections::BTreeSet;
 
 /// A number that a finished run gives.
 #[derive(Clone, Debug, PartialEq)]
@@ -144,7 +146,7 @@ impl<'m> Lowering<'m> {
         let place = self.global(point)?;
         let axes = self.model.coordinates.frame.axes();
         let Value::Vector(x) = place else { return Err(internal(point.span, "a point was expected")) };
-        let region = Region::Cells((0..self.model.geometry.regions.len()).map(RegionId).collect());
+        let region = self.around_points(of, expr.span)?;
         let parts = self.on_parts(&region, |lowering| {
             let value = lowering.expr(of)?;
             let value = lowering.shaped(value, &of.ty);
@@ -158,6 +160,31 @@ impl<'m> Lowering<'m> {
             })
             .collect();
         Ok(Value::from_components(&values))
+    }
+
+    /// Where a value at a point is looked up: in all regions, or where fields in it live on paths only, on the paths that they share.
+    fn around_points(&self, of: &'m Expr, span: Span) -> Lowered<Region> {
+        let model = self.model;
+        let mut fields = BTreeSet::new();
+        deep(model, of, &mut |e| {
+            if let ExprKind::Field(field) = e.kind {
+                fields.insert(field);
+            }
+        });
+        let pieces = |field: &FieldId| &model.fields[field.0].domain.pieces;
+        let in_cells = |field: &FieldId| pieces(field).iter().any(|piece| matches!(piece, Piece::Region(_)));
+        let Some(alone) = fields.iter().find(|field| !in_cells(field)) else {
+            return Ok(Region::Cells((0..model.geometry.regions.len()).map(RegionId).collect()));
+        };
+        let shared = |piece: &Piece| {
+            let domain = Domain { pieces: vec![*piece], span };
+            fields.iter().all(|field| model.without(&model.fields[field.0], &domain).is_none())
+        };
+        let paths: Vec<Piece> = pieces(alone).iter().copied().filter(shared).collect();
+        if paths.is_empty() {
+            return Err(unsupported(span, "no path carries all the fields of this value"));
+        }
+        Ok(Region::Edges(paths))
     }
 
     /// The reference measure of a domain.
@@ -194,14 +221,9 @@ impl<'m> Lowering<'m> {
 
     /// The vector field whose unknowns carry forces on these edges: a displacement where there is one.
     pub(crate) fn field_of_force(&self, pieces: &[Piece], span: Span) -> Lowered<FieldId> {
-        let regions = self.bounded_by(pieces);
+        let domain = Domain { pieces: pieces.to_vec(), span };
         let lives = |field: &crate::model::Field| {
-            field.shape == Shape::Vector
-                && field
-                    .domain
-                    .pieces
-                    .iter()
-                    .any(|piece| matches!(piece, Piece::Region(r) if regions.contains(r)))
+            field.shape == Shape::Vector && self.model.without(field, &domain).is_none()
         };
         let fields: Vec<usize> =
             (0..self.model.fields.len()).filter(|&f| lives(&self.model.fields[f])).collect();

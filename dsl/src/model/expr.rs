@@ -322,13 +322,18 @@ pub enum Piece {
     Segment(PathId, usize),
     /// The symmetry axis.
     Axis,
+    /// The first point of a path.
+    Start(PathId),
+    /// The last point of a path.
+    End(PathId),
     /// First side of a pair.
     First(PairId),
     /// Both sides of a pair.
     Pair(PairId),
 }
 
-/// Where something holds, is integrated or reduced: a set of pieces of one kind (cells, edges or contact pairs), reference configuration.
+/// Where something holds, is integrated or reduced: a set of pieces of one kind (cells, edges, ends of paths or contact pairs), reference
+/// configuration. The domain of a field may have both cells and edges.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Domain {
     /// Pieces without repetition, in ascending order.

@@ -94,6 +94,8 @@ impl fmt::Display for Place {
         match self {
             Place::Everywhere => write!(f, "everywhere"),
             Place::Region(name) | Place::Path(name) => write!(f, "{name}"),
+            Place::Start(path) => write!(f, "{path}.start"),
+            Place::End(path) => write!(f, "{path}.end"),
             Place::Segment(path, label) => write!(f, "{path}.{label}"),
             Place::Point([x, y]) => write!(f, "({x}, {y})"),
         }

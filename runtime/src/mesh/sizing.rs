@@ -15,6 +15,10 @@ pub enum Place {
     Path(String),
     /// Along one labelled segment: path, label.
     Segment(String, String),
+    /// Around the first point of a path.
+    Start(String),
+    /// Around the last point of a path.
+    End(String),
     /// Around a point.
     Point(Point),
 }
@@ -48,7 +52,7 @@ impl Default for MeshSizing {
 /// Part of the diagonal that bounds sizes where no rule applies everywhere.
 const COARSEST: f64 = 0.1;
 
-/// An edge of a cell on an arc turns by at most this angle \[rad\].
+/// An edge on an arc turns by at most this angle \[rad\].
 const TURN: f64 = FRAC_PI_6;
 
 enum Shape<'a> {
@@ -87,9 +91,9 @@ impl<'a> SizeField<'a> {
             let [low, high] = geometry.bounds();
             sources.push((COARSEST * point::distance(low, high), Shape::Everywhere));
         }
-        for piece in boundaries.iter().flat_map(Boundary::pieces).filter(|piece| !piece.reversed) {
-            if let Curve::Arc { radius, .. } = piece.curve {
-                sources.push((TURN * radius, Shape::Curves(vec![piece.curve])));
+        for segment in geometry.paths.iter().flat_map(|path| &path.segments) {
+            if let Curve::Arc { radius, .. } = segment.curve {
+                sources.push((TURN * radius, Shape::Curves(vec![segment.curve])));
             }
         }
         sources.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -138,6 +142,11 @@ fn shape<'a>(geometry: &Geometry, boundaries: &'a [Boundary], place: &Place) -> 
         let curves: Vec<Curve> = named.map(|segment| segment.curve).collect();
         if curves.is_empty() { Err(unknown()) } else { Ok(Shape::Curves(curves)) }
     };
+    let ends = |name: &str| {
+        let path = geometry.paths.iter().find(|path| path.name == name).ok_or_else(unknown)?;
+        let (first, last) = path.segments.first().zip(path.segments.last()).ok_or_else(unknown)?;
+        Ok([first.curve.start(), last.curve.end()])
+    };
     match place {
         Place::Everywhere => Ok(Shape::Everywhere),
         Place::Region(name) => {
@@ -146,6 +155,8 @@ fn shape<'a>(geometry: &Geometry, boundaries: &'a [Boundary], place: &Place) -> 
         }
         Place::Path(name) => curves(name, None),
         Place::Segment(name, label) => curves(name, Some(label)),
+        Place::Start(name) => ends(name).map(|[start, _]| Shape::Point(start)),
+        Place::End(name) => ends(name).map(|[_, end]| Shape::Point(end)),
         Place::Point(at) => Ok(Shape::Point(*at)),
     }
 }

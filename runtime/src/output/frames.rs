@@ -3,10 +3,10 @@
 use super::snapshot::{self, Snapshot};
 use super::vtu::{self, Grid, PointData};
 use crate::error::Error;
-use crate::generated::{FrameColumn, Program};
+use crate::generated::{Domain, FrameColumn, Program};
 use crate::mesh::Mesh;
 use crate::observer::Frame;
-use crate::system::{domain_nodes, region_cells};
+use crate::system::{domain_nodes, path_edges, region_cells};
 use std::path::PathBuf;
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread::JoinHandle;
@@ -23,7 +23,7 @@ pub struct FrameWriter {
 impl FrameWriter {
     /// Starts the thread; files go to `folder`.
     pub fn start(folder: PathBuf, program: &'static Program, mesh: &Mesh) -> Result<Self, Error> {
-        let grids = program.frames.iter().map(|f| grid(mesh, f.regions)).collect::<Result<Vec<_>, _>>()?;
+        let grids = program.frames.iter().map(|f| grid(mesh, f.domain)).collect::<Result<Vec<_>, _>>()?;
         let (sender, receiver) = sync_channel::<Frame>(WAITING);
         let thread = std::thread::spawn(move || {
             let mut series = vec![Vec::new(); grids.len()];
@@ -56,18 +56,24 @@ impl Drop for FrameWriter {
     }
 }
 
-fn grid(mesh: &Mesh, regions: &'static [&'static str]) -> Result<Grid, Error> {
-    let nodes = domain_nodes(mesh, crate::generated::Domain::Cells(regions))?;
+fn grid(mesh: &Mesh, domain: Domain) -> Result<Grid, Error> {
+    let nodes = domain_nodes(mesh, domain)?;
     let position = |n: u32| nodes.binary_search(&n).unwrap_or(0) as u32;
-    let mut grid = Grid {
-        points: nodes.iter().map(|&n| mesh.nodes[n as usize]).collect(),
-        cells: Vec::new(),
-        regions: Vec::new(),
-    };
-    for region in regions {
-        for cell in region_cells(mesh, region)? {
-            grid.cells.push(mesh.cells[cell].map(position));
-            grid.regions.push(mesh.cell_region[cell]);
+    let mut grid =
+        Grid { points: nodes.iter().map(|&n| mesh.nodes[n as usize]).collect(), ..Grid::default() };
+    match domain {
+        Domain::Cells(regions) => {
+            for region in regions {
+                for cell in region_cells(mesh, region)? {
+                    grid.cells.push(mesh.cells[cell].map(position));
+                    grid.regions.push(mesh.cell_region[cell]);
+                }
+            }
+        }
+        Domain::Edges(paths) | Domain::Ends(paths) => {
+            for path in paths {
+                grid.edges.extend(path_edges(mesh, path)?.into_iter().map(|edge| edge.map(position)));
+            }
         }
     }
     Ok(grid)

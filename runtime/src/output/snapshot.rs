@@ -46,6 +46,10 @@ pub fn write(path: &Path, snapshot: &Snapshot<'_>) -> Result<(), Error> {
     for edge in outline(snapshot.grid) {
         draw_edge(&mut canvas, edge.map(|n| view.pixel(position(n))));
     }
+    for edge in &snapshot.grid.edges {
+        let values = edge.map(|n| snapshot.values[n as usize]);
+        draw_curve(&mut canvas, edge.map(|n| view.pixel(position(n))), values, &range);
+    }
     draw_bar(&mut canvas, &range);
     canvas.text([MARGIN, 10.0], snapshot.title, INK);
     canvas.text([MARGIN, 24.0], snapshot.caption, INK);
@@ -162,15 +166,31 @@ fn outline(grid: &Grid) -> Vec<[u32; 3]> {
     edges.into_values().filter(|(_, regions)| border(regions)).map(|(edge, _)| edge).collect()
 }
 
+/// Value at the parameter `s` of an edge from its start, end and middle.
+fn on_edge([a, b, m]: [f64; 3], s: f64) -> f64 {
+    a * (1.0 - s) * (1.0 - 2.0 * s) + b * s * (2.0 * s - 1.0) + m * 4.0 * s * (1.0 - s)
+}
+
+fn edge_point(nodes: [[f64; 2]; 3], s: f64) -> [f64; 2] {
+    [0, 1].map(|i| on_edge(nodes.map(|node| node[i]), s))
+}
+
 fn draw_edge(canvas: &mut Canvas, nodes: [[f64; 2]; 3]) {
-    let at = |s: f64| {
-        [0, 1].map(|i| {
-            let [a, b, m] = [nodes[0][i], nodes[1][i], nodes[2][i]];
-            a * (1.0 - s) * (1.0 - 2.0 * s) + b * s * (2.0 * s - 1.0) + m * 4.0 * s * (1.0 - s)
-        })
-    };
     for k in 0..PARTS {
-        canvas.line(at(k as f64 / PARTS as f64), at((k + 1) as f64 / PARTS as f64), INK);
+        let [from, to] = [k, k + 1].map(|k| edge_point(nodes, k as f64 / PARTS as f64));
+        canvas.line(from, to, INK);
+    }
+}
+
+/// An edge of a curve, which has no cells to show its values.
+fn draw_curve(canvas: &mut Canvas, nodes: [[f64; 2]; 3], values: [f64; 3], range: &Range) {
+    for k in 0..PARTS {
+        let [from, to] = [k, k + 1].map(|k| edge_point(nodes, k as f64 / PARTS as f64));
+        let colour = range.colour(on_edge(values, (k as f64 + 0.5) / PARTS as f64));
+        for shift in [-1.0, 0.0, 1.0] {
+            canvas.line([from[0] + shift, from[1]], [to[0] + shift, to[1]], colour);
+            canvas.line([from[0], from[1] + shift], [to[0], to[1] + shift], colour);
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! VTK unstructured grids (.vtu) with curved quadratic triangles and node data, and the time series (.pvd) that lists them.
+//! VTK unstructured grids (.vtu) with curved quadratic triangles or edges and node data, and the time series (.pvd) that lists them.
 //!
 //! Format: *VTK File Formats* (Kitware), XML, appended raw data compressed with zlib. Axisymmetric models lie in the plane as x = r, y = z.
 
@@ -11,6 +11,10 @@ use std::path::Path;
 
 /// VTK's number of the 6-node triangle.
 const QUADRATIC_TRIANGLE: u8 = 22;
+/// VTK's number of the 3-node edge.
+const QUADRATIC_EDGE: u8 = 21;
+/// Region number of edges.
+const NO_REGION: i32 = -1;
 
 /// Node values of one quantity.
 pub struct PointData {
@@ -22,7 +26,8 @@ pub struct PointData {
     pub values: Vec<f64>,
 }
 
-/// Cells and nodes of a file.
+/// Cells, edges and nodes of a file.
+#[derive(Default)]
 pub struct Grid {
     /// In-plane coordinates.
     pub points: Vec<[f64; 2]>,
@@ -30,6 +35,8 @@ pub struct Grid {
     pub cells: Vec<[u32; 6]>,
     /// Region number of each cell.
     pub regions: Vec<u16>,
+    /// 3 nodes per edge of a path: ends, then middle.
+    pub edges: Vec<[u32; 3]>,
 }
 
 /// Writes one frame.
@@ -37,25 +44,31 @@ pub fn write(path: &Path, grid: &Grid, data: &[PointData]) -> Result<(), Error> 
     let mut appended = Appended::default();
     let points: Vec<f64> = grid.points.iter().flat_map(|p| [p[0], p[1], 0.0]).collect();
     let mut xml = String::new();
-    let (nodes, cells) = (grid.points.len(), grid.cells.len());
+    let (nodes, cells, edges) = (grid.points.len(), grid.cells.len(), grid.edges.len());
+    let elements = cells + edges;
     xml.push_str("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n");
-    let _ = writeln!(xml, "<Piece NumberOfPoints=\"{nodes}\" NumberOfCells=\"{cells}\">");
+    let _ = writeln!(xml, "<Piece NumberOfPoints=\"{nodes}\" NumberOfCells=\"{elements}\">");
     xml.push_str("<PointData>\n");
     for item in data {
         appended.floats(&mut xml, &item.name, item.components, &item.values)?;
     }
     xml.push_str("</PointData>\n<CellData>\n");
-    let regions: Vec<u8> = grid.regions.iter().flat_map(|r| i32::from(*r).to_le_bytes()).collect();
+    let of_cells = grid.regions.iter().map(|&region| i32::from(region));
+    let regions: Vec<u8> =
+        of_cells.chain(grid.edges.iter().map(|_| NO_REGION)).flat_map(i32::to_le_bytes).collect();
     appended.array(&mut xml, "Int32", "region", 1, &regions)?;
     xml.push_str("</CellData>\n<Points>\n");
     appended.floats(&mut xml, "Points", 3, &points)?;
     xml.push_str("</Points>\n<Cells>\n");
-    let connectivity: Vec<u8> =
-        grid.cells.iter().flatten().flat_map(|&n| i64::from(n).to_le_bytes()).collect();
-    let offsets: Vec<u8> = (1..=cells as i64).flat_map(|k| (6 * k).to_le_bytes()).collect();
+    let members = grid.cells.iter().flatten().chain(grid.edges.iter().flatten());
+    let connectivity: Vec<u8> = members.flat_map(|&n| i64::from(n).to_le_bytes()).collect();
+    let last = 6 * cells as i64;
+    let ends = (1..=cells as i64).map(|k| 6 * k).chain((1..=edges as i64).map(|k| last + 3 * k));
+    let offsets: Vec<u8> = ends.flat_map(i64::to_le_bytes).collect();
+    let types = [vec![QUADRATIC_TRIANGLE; cells], vec![QUADRATIC_EDGE; edges]].concat();
     appended.array(&mut xml, "Int64", "connectivity", 1, &connectivity)?;
     appended.array(&mut xml, "Int64", "offsets", 1, &offsets)?;
-    appended.array(&mut xml, "UInt8", "types", 1, &vec![QUADRATIC_TRIANGLE; cells])?;
+    appended.array(&mut xml, "UInt8", "types", 1, &types)?;
     xml.push_str("</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
     let mut bytes = xml.into_bytes();
     bytes.extend_from_slice(&appended.bytes);

@@ -116,7 +116,7 @@ const fn program(solve: fn(&[f64]) -> Solve) -> Program {
             components: 1,
             component_names: &[""],
             space: Space::P1,
-            regions: &["body"],
+            domains: &[Domain::Cells(&["body"])],
             unit: "1",
             start: |_, _, out| out[0] = 1.0,
         }],
@@ -168,7 +168,7 @@ const fn program(solve: fn(&[f64]) -> Solve) -> Program {
             ],
         }],
         frames: &[Frames {
-            regions: &["body"],
+            domain: Domain::Cells(&["body"]),
             every: Every::Time(|_| 0.25),
             columns: &[FrameColumn { name: "u", unit: "1", unit_value: 1.0, components: 1, offset: 0 }],
             function: PointFunction {

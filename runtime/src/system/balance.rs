@@ -82,7 +82,7 @@ impl System {
         let first = self.program.layout.functionals[0];
         for (k, functional) in self.functionals.iter_mut().enumerate() {
             let at = At { y, rates, g: &self.g, alpha: 0.0 };
-            let value = functional.value(&self.mesh, &self.unknowns, at);
+            let value = functional.value(&self.unknowns, at);
             y[self.unknowns.functionals + k] = value;
             self.g[first + k] = value;
         }
@@ -146,7 +146,7 @@ impl System {
             for (term, c) in couplings.terms.iter().zip(coefficients) {
                 if wanted(term.block) {
                     let functional = &mut self.functionals[term.functional];
-                    functional.evaluate_gradient(&self.mesh, &self.unknowns, at);
+                    functional.evaluate_gradient(&self.unknowns, at);
                     add(&mut residual, c, &functional.gradient);
                 }
             }
@@ -210,7 +210,7 @@ impl System {
             pair.add_tangent(&self.unknowns, &self.g, matrix, curvature, &mut residual, &mut self.values);
         }
         for functional in &mut self.functionals {
-            functional.evaluate_gradient(&self.mesh, &self.unknowns, at);
+            functional.evaluate_gradient(&self.unknowns, at);
         }
         if let Some(couplings) = &self.program.couplings {
             let mut unused = vec![0.0; residual.len()];
@@ -342,7 +342,7 @@ impl System {
         match observable {
             ObservableOn::Value(value) => {
                 let at = At { y, rates, g: &self.g, alpha: 0.0 };
-                value.evaluate(&self.mesh, &self.unknowns, &self.pairs, at)
+                value.evaluate(&self.unknowns, &self.pairs, at)
             }
             ObservableOn::Force { block, unknowns } => {
                 let residual = self.unknown_residual(y, rates, 0.0, Some(*block));

@@ -1,6 +1,6 @@
 //! Elements of one integral's domain in batches of [`BATCH`], structure of arrays, ready for emitted kernels.
 
-use super::unknowns::{Unknowns, path_edges, region_cells};
+use super::unknowns::{Unknowns, domain_elements, field_nodes};
 use crate::error::Error;
 use crate::generated::{BATCH, Batch, Domain, Integral, Row};
 use crate::mesh::Mesh;
@@ -37,7 +37,7 @@ pub struct Gathered {
 impl Elements {
     /// Elements of the domain of `integral`, with local unknowns use by use, node by node, component by component.
     pub fn new(mesh: &Mesh, unknowns: &Unknowns, integral: &Integral) -> Result<Self, Error> {
-        let groups = element_nodes(mesh, integral.domain)?;
+        let groups = domain_elements(mesh, integral.domain)?;
         let geometry = geometry(integral.domain);
         let mut set = Self {
             headers: Vec::new(),
@@ -157,10 +157,10 @@ fn collect(vector: &[f64], places: &[[u32; BATCH]], rows: &mut [Row]) {
 }
 
 /// The element whose nodes carry the geometry.
-fn geometry(domain: Domain) -> &'static Element {
+pub fn geometry(domain: Domain) -> &'static Element {
     match domain {
         Domain::Cells(_) => Element::P2_TRIANGLE,
-        Domain::Edges(_) => Element::P2_SEGMENT,
+        Domain::Edges(_) | Domain::Ends(_) => Element::P2_SEGMENT,
     }
 }
 
@@ -174,30 +174,4 @@ fn is_straight(mesh: &Mesh, geometry: &Element, nodes: &[u32]) -> bool {
         }),
         _ => true,
     })
-}
-
-/// Nodes of an element that carry a field: an edge has 2 or 3, a cell 3 or 6.
-fn field_nodes(element_nodes: usize, nodes_per_cell: usize) -> usize {
-    match (element_nodes, nodes_per_cell) {
-        (3, 3) => 2,
-        (3, _) => 3,
-        (_, n) => n,
-    }
-}
-
-/// Node lists of the elements, by region for cells.
-fn element_nodes(mesh: &Mesh, domain: Domain) -> Result<Vec<Vec<Vec<u32>>>, Error> {
-    match domain {
-        Domain::Cells(regions) => regions
-            .iter()
-            .map(|region| Ok(region_cells(mesh, region)?.map(|c| mesh.cells[c].to_vec()).collect()))
-            .collect(),
-        Domain::Edges(paths) => {
-            let mut edges = Vec::new();
-            for path in paths {
-                edges.extend(path_edges(mesh, path)?.iter().map(|e| e.to_vec()));
-            }
-            Ok(vec![edges])
-        }
-    }
 }

@@ -1,6 +1,7 @@
 //! Functionals that equations use: scalars Z(fields), their gradients, and the loads c_k grad Z_k on them.
 
-use super::point::{Place, Sampler, locate};
+use super::place::Place;
+use super::point::{Sampler, locate};
 use super::terms::{At, Term};
 use super::unknowns::Unknowns;
 use crate::error::Error;
@@ -31,9 +32,9 @@ impl FunctionalOn {
             FunctionalKind::Integral(integrals) => Kind::Integrals(
                 integrals.iter().map(|i| Term::new(i, mesh, unknowns)).collect::<Result<_, _>>()?,
             ),
-            FunctionalKind::Point { at, function } => Kind::Point {
+            FunctionalKind::Point { at, domain, function } => Kind::Point {
                 sampler: Sampler::new(function, mesh),
-                place: locate(mesh, at(g))?,
+                place: locate(mesh, *domain, at(g))?,
                 outputs: vec![0.0; function.outputs],
             },
         };
@@ -57,26 +58,26 @@ impl FunctionalOn {
     }
 
     /// The value Z.
-    pub fn value(&mut self, mesh: &Mesh, unknowns: &Unknowns, at: At<'_>) -> f64 {
+    pub fn value(&mut self, unknowns: &Unknowns, at: At<'_>) -> f64 {
         match &mut self.kind {
             Kind::Integrals(terms) => terms.iter_mut().map(|t| t.value(at)).sum(),
             Kind::Point { sampler, place, outputs } => {
-                sampler.evaluate(mesh, unknowns, place, at, outputs);
+                sampler.evaluate(unknowns, place, at, outputs);
                 outputs[0]
             }
         }
     }
 
     /// Fills the gradient.
-    pub fn evaluate_gradient(&mut self, mesh: &Mesh, unknowns: &Unknowns, at: At<'_>) {
+    pub fn evaluate_gradient(&mut self, unknowns: &Unknowns, at: At<'_>) {
         self.gradient.fill(0.0);
         match &mut self.kind {
             Kind::Integrals(terms) => {
                 terms.iter_mut().for_each(|t| t.add_residual(at, 1.0, &mut self.gradient))
             }
             Kind::Point { sampler, place, outputs } => {
-                sampler.evaluate(mesh, unknowns, place, at, outputs);
-                sampler.add_gradient(mesh, unknowns, place, &outputs[1..], &mut self.gradient);
+                sampler.evaluate(unknowns, place, at, outputs);
+                sampler.add_gradient(unknowns, place, &outputs[1..], &mut self.gradient);
             }
         }
     }

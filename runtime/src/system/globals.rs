@@ -1,6 +1,7 @@
 //! The globals: parameters, measures, constants, time, states, functionals, observables in one array.
 
-use super::unknowns::{path_edges, region_cells};
+use super::elements::geometry;
+use super::unknowns::domain_elements;
 use crate::error::Error;
 use crate::generated::{Domain, Program};
 use crate::mesh::Mesh;
@@ -20,26 +21,11 @@ pub fn constants(program: &Program, parameters: &[f64], mesh: &Mesh) -> Result<V
     Ok(g)
 }
 
-/// Reference measure of a domain: integral of `weight` over its cells or edges.
+/// Reference measure of a domain: integral of `weight` over its cells or edges; zero for points.
 pub fn domain_measure(mesh: &Mesh, domain: Domain, weight: fn([f64; 2]) -> f64) -> Result<f64, Error> {
-    let mut sum = 0.0;
-    match domain {
-        Domain::Cells(regions) => {
-            for region in regions {
-                for cell in region_cells(mesh, region)? {
-                    sum += integral(mesh, Element::P2_TRIANGLE, &mesh.cells[cell], weight);
-                }
-            }
-        }
-        Domain::Edges(paths) => {
-            for path in paths {
-                for edge in path_edges(mesh, path)? {
-                    sum += integral(mesh, Element::P2_SEGMENT, &edge, weight);
-                }
-            }
-        }
-    }
-    Ok(sum)
+    let element = geometry(domain);
+    let elements = domain_elements(mesh, domain)?.concat();
+    Ok(elements.iter().map(|nodes| integral(mesh, element, nodes, weight)).sum())
 }
 
 fn integral(mesh: &Mesh, element: &Element, nodes: &[u32], weight: fn([f64; 2]) -> f64) -> f64 {

@@ -7,11 +7,12 @@
 
 use super::System;
 use super::contact::Curvature;
+use super::elements::geometry;
 use super::globals::quadrature_points;
 use super::newton::StageProblem;
 use super::start::number_equations;
 use super::terms::At;
-use super::unknowns::{NONE, region_cells};
+use super::unknowns::{NONE, domain_elements, field_nodes};
 use crate::error::{Cause, Error, SolveError};
 use ansatz_elements::Element;
 use std::collections::BTreeMap;
@@ -81,21 +82,19 @@ impl System {
     /// Connected parts of a scalar field.
     fn parts(&self, field: usize) -> Result<Vec<Level>, Error> {
         let numbers = &self.unknowns.fields[field];
-        let element = if numbers.nodes_per_cell == 3 { Element::P1_TRIANGLE } else { Element::P2_TRIANGLE };
         let mut part: Vec<usize> = (0..numbers.nodes.len()).collect();
         let mut weights = vec![0.0; numbers.nodes.len()];
-        for region in self.program.fields[field].regions {
-            for cell in region_cells(&self.mesh, region)? {
-                let nodes = &self.mesh.cells[cell];
-                let places: Vec<usize> = nodes[..numbers.nodes_per_cell]
+        for domain in self.program.fields[field].domains {
+            let shape = geometry(*domain);
+            for nodes in domain_elements(&self.mesh, *domain)?.concat() {
+                let places: Vec<usize> = nodes[..field_nodes(nodes.len(), numbers.nodes_per_cell)]
                     .iter()
                     .map(|&n| numbers.position[n as usize] as usize)
                     .collect();
                 places.windows(2).for_each(|pair| join(&mut part, pair[0], pair[1]));
+                let element = linear_or(shape, places.len());
                 let mut basis = vec![0.0; places.len()];
-                for (local, x, weight) in
-                    quadrature_points(&self.mesh, Element::P2_TRIANGLE, nodes, MEAN_DEGREE)
-                {
+                for (local, x, weight) in quadrature_points(&self.mesh, shape, &nodes, MEAN_DEGREE) {
                     element.evaluate(&local, &mut basis);
                     let weight = weight * (self.program.weight)(x);
                     places.iter().zip(&basis).for_each(|(&place, value)| weights[place] += weight * value);
@@ -220,6 +219,12 @@ impl System {
         }
         places.join(", ")
     }
+}
+
+/// The element with this many nodes on the cell of a quadratic one.
+fn linear_or(quadratic: &'static Element, nodes: usize) -> &'static Element {
+    let linear = Element::find("P1", quadratic.cell).filter(|element| element.nodes().len() == nodes);
+    linear.unwrap_or(quadratic)
 }
 
 /// Numbers of the same size that cancel nowhere by design.

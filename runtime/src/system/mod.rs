@@ -14,6 +14,7 @@ mod globals;
 mod levels;
 mod newton;
 mod observables;
+mod place;
 mod point;
 mod probe;
 mod ramp;
@@ -27,10 +28,11 @@ mod unknowns;
 pub use balance::Balance;
 pub use frames::FrameSampler;
 pub use newton::{NewtonReport, StageProblem};
-pub use point::{Place, Sampler, node_places};
+pub use place::Place;
+pub use point::{Sampler, node_places};
 pub use probe::Probe;
 pub use terms::At;
-pub use unknowns::{FieldNumbers, Unknowns, domain_nodes, region_cells};
+pub use unknowns::{FieldNumbers, Unknowns, domain_nodes, path_edges, region_cells};
 
 use crate::error::Error;
 use crate::generated::{Program, Solve};
@@ -119,7 +121,7 @@ impl System {
             let bounds = program.states.iter().map(|s| (s.bounds)(&g)).collect();
             StateSolver::new(system, program.layout, bounds)
         });
-        let cell_size = (mesh.cells.len().max(1) as f64).recip().sqrt() * mesh_extent(&mesh);
+        let cell_size = typical_edge(&mesh);
         let settings = with_step_bounds((program.solve)(&g));
         if settings.time.is_some_and(|(start, end)| start >= end) {
             return Err(Error::Model(String::from("the time of a run must end after it starts")));
@@ -215,11 +217,17 @@ fn analyse(pattern: &SparsePattern) -> Result<BorderedSolver, Error> {
     BorderedSolver::new(single.as_ref().unwrap_or(pattern)).map_err(|e| Error::Model(e.to_string()))
 }
 
-/// Diagonal of the box around a mesh.
-fn mesh_extent(mesh: &Mesh) -> f64 {
+/// Typical edge length: that of equal cells in the box around a mesh, or of equal edges along its paths where it has no cells.
+fn typical_edge(mesh: &Mesh) -> f64 {
     let span = |axis: usize| {
         let values = || mesh.nodes.iter().map(|x| x[axis]);
         values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
     };
-    if mesh.nodes.is_empty() { 0.0 } else { span(0).hypot(span(1)) }
+    let extent = if mesh.nodes.is_empty() { 0.0 } else { span(0).hypot(span(1)) };
+    let edges: usize = mesh.paths.iter().map(|path| path.edges.len()).sum();
+    if mesh.cells.is_empty() {
+        extent / edges.max(1) as f64
+    } else {
+        extent / (mesh.cells.len() as f64).sqrt()
+    }
 }

@@ -1,7 +1,8 @@
 //! Scalars for outputs and events, evaluated after a step.
 
 use super::contact::PairOn;
-use super::point::{Place, Sampler, locate, node_places};
+use super::place::Place;
+use super::point::{Sampler, locate, node_places};
 use super::sides::{SidePoint, side_points};
 use super::terms::{At, Term};
 use super::unknowns::{Unknowns, domain_nodes};
@@ -73,9 +74,15 @@ impl ObservableOn {
             ObservableKind::Side { paths, regions, function } => {
                 Value::Side(Sampler::new(function, mesh), side_points(mesh, paths, regions, program.weight)?)
             }
-            ObservableKind::Min(domain, function) => extreme(1.0, function, node_places(mesh, *domain)?),
-            ObservableKind::Max(domain, function) => extreme(-1.0, function, node_places(mesh, *domain)?),
-            ObservableKind::Point(at, function) => extreme(1.0, function, vec![locate(mesh, at(g))?]),
+            ObservableKind::Min(domain, function) => {
+                extreme(1.0, function, node_places(mesh, *domain, function)?)
+            }
+            ObservableKind::Max(domain, function) => {
+                extreme(-1.0, function, node_places(mesh, *domain, function)?)
+            }
+            ObservableKind::Point(at, domain, function) => {
+                extreme(1.0, function, vec![locate(mesh, *domain, at(g))?])
+            }
             ObservableKind::PairMin(pair, function) => gap(1.0, *pair, *function),
             ObservableKind::PairMax(pair, function) => gap(-1.0, *pair, *function),
         }))
@@ -84,14 +91,14 @@ impl ObservableOn {
 
 impl Value {
     /// The value at these unknowns and the gaps of the pairs' last update.
-    pub fn evaluate(&mut self, mesh: &Mesh, unknowns: &Unknowns, pairs: &[PairOn], at: At<'_>) -> f64 {
+    pub fn evaluate(&mut self, unknowns: &Unknowns, pairs: &[PairOn], at: At<'_>) -> f64 {
         match self {
             Self::Integrals(terms) => terms.iter_mut().map(|t| t.value(at)).sum(),
             Self::Side(sampler, points) => {
                 let mut sum = 0.0;
                 let mut out = vec![0.0; sampler.outputs()];
                 for point in points.iter() {
-                    sampler.evaluate_with(mesh, unknowns, &point.place, &point.normal, at, &mut out);
+                    sampler.evaluate_with(unknowns, &point.place, &point.normal, at, &mut out);
                     sum += point.weight * out[0];
                 }
                 sum
@@ -100,7 +107,7 @@ impl Value {
                 let mut best = f64::INFINITY;
                 let mut out = vec![0.0; sampler.outputs()];
                 for place in places.iter() {
-                    sampler.evaluate(mesh, unknowns, place, at, &mut out);
+                    sampler.evaluate(unknowns, place, at, &mut out);
                     best = best.min(*sign * out[0]);
                 }
                 *sign * best

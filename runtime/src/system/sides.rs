@@ -1,6 +1,6 @@
 //! Quadrature points on paths as seen from the cells on one side, where gradients and normals have one value.
 
-use super::point::Place;
+use super::place::Place;
 use crate::error::Error;
 use crate::mesh::{CellEdge, Mesh, PathEdge};
 use ansatz_elements::{Cell, Element, quadrature};
@@ -65,7 +65,7 @@ fn points_of(mesh: &Mesh, side: CellEdge, weight: fn([f64; 2]) -> f64, points: &
         Element::P2_SEGMENT.gradients(s, &mut slopes);
         let tangent = [0, 1].map(|i| (0..3).map(|k| slopes[k] * along[k][i]).sum::<f64>());
         let length = tangent[0].hypot(tangent[1]);
-        let place = Place::new(mesh, cell, local);
+        let place = Place::in_cell(mesh, cell, local);
         let weight = part * length * weight(place.x);
         points.push(SidePoint { normal: [tangent[1] / length, -tangent[0] / length], weight, place });
     }

@@ -31,9 +31,10 @@ impl FieldNumbers {
             Space::P2 => 6,
         };
         let mut carries = vec![false; mesh.nodes.len()];
-        for region in field.regions {
-            for cell in region_cells(mesh, region)? {
-                mesh.cells[cell][..nodes_per_cell].iter().for_each(|&n| carries[n as usize] = true);
+        for domain in field.domains {
+            for element in domain_elements(mesh, *domain)?.concat() {
+                let carrying = &element[..field_nodes(element.len(), nodes_per_cell)];
+                carrying.iter().for_each(|&n| carries[n as usize] = true);
             }
         }
         let nodes: Vec<u32> = (0..carries.len()).filter(|&n| carries[n]).map(|n| n as u32).collect();
@@ -106,21 +107,47 @@ pub fn path_edges(mesh: &Mesh, path: &str) -> Result<Vec<[u32; 3]>, Error> {
     if edges.is_empty() && path != "axis" { Err(missing()) } else { Ok(edges) }
 }
 
+/// Nodes of an element that carry a field: an edge has 2 or 3, a cell 3 or 6.
+pub fn field_nodes(element_nodes: usize, nodes_per_cell: usize) -> usize {
+    match (element_nodes, nodes_per_cell) {
+        (3, 3) => 2,
+        (3, _) => 3,
+        (_, n) => n,
+    }
+}
+
+/// Node lists of the elements of a domain: by region for cells, all in one list for edges, none for points.
+pub fn domain_elements(mesh: &Mesh, domain: Domain) -> Result<Vec<Vec<Vec<u32>>>, Error> {
+    match domain {
+        Domain::Cells(regions) => regions
+            .iter()
+            .map(|region| Ok(region_cells(mesh, region)?.map(|c| mesh.cells[c].to_vec()).collect()))
+            .collect(),
+        Domain::Edges(paths) => {
+            let mut edges = Vec::new();
+            for path in paths {
+                edges.extend(path_edges(mesh, path)?.iter().map(|e| e.to_vec()));
+            }
+            Ok(vec![edges])
+        }
+        Domain::Ends(_) => Ok(Vec::new()),
+    }
+}
+
+/// The node at `path.start` or `path.end`.
+fn end_node(mesh: &Mesh, name: &str) -> Result<u32, Error> {
+    let (path, end) = name.rsplit_once('.').unwrap_or((name, "start"));
+    let edges = path_edges(mesh, path)?;
+    let node = if end == "start" { edges.first().map(|e| e[0]) } else { edges.last().map(|e| e[1]) };
+    node.ok_or_else(|| Error::Model(format!("the mesh has no point `{name}`")))
+}
+
 /// Mesh nodes of a domain, ascending.
 pub fn domain_nodes(mesh: &Mesh, domain: Domain) -> Result<Vec<u32>, Error> {
-    let mut nodes = Vec::new();
-    match domain {
-        Domain::Cells(regions) => {
-            for region in regions {
-                nodes.extend(region_cells(mesh, region)?.flat_map(|c| mesh.cells[c]));
-            }
-        }
-        Domain::Edges(paths) => {
-            for path in paths {
-                nodes.extend(path_edges(mesh, path)?.into_iter().flatten());
-            }
-        }
-    }
+    let mut nodes = match domain {
+        Domain::Ends(names) => names.iter().map(|name| end_node(mesh, name)).collect::<Result<_, _>>()?,
+        _ => domain_elements(mesh, domain)?.concat().concat(),
+    };
     nodes.sort_unstable();
     nodes.dedup();
     Ok(nodes)

@@ -297,7 +297,8 @@ pub struct PointInput {
     pub rate: bool,
 }
 
-/// An emitted function of region, reference position, inputs and globals; writes the results.
+/// An emitted function of region, reference position, inputs and globals; writes the results. Behind the inputs that it lists stand the normal,
+/// where the point is seen from one side, and the tangent and the curvature vector of the path, where it is on one: two numbers each.
 pub type PointEvaluation = fn(region: usize, x: [f64; 2], inputs: &[f64], g: &[f64], out: &mut [f64]);
 
 /// A function of position, field values and globals at one point.

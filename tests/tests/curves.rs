@@ -55,6 +55,28 @@ fn fields_on_curves_have_means_extremes_and_values_at_points() {
 }
 
 #[test]
+fn derivatives_along_curves_are_those_by_their_arc_length() {
+    let (_, notes) = ran();
+    // A string of length L = 2 sqrt(2) under tension 1 with load 1: sag L^2/8, slopes L/2 at its ends. Quadratic elements are exact.
+    assert_near(value(&notes, "sag"), 1.0, 1e-9);
+    assert_near(value(&notes, "slope"), 2.0_f64.sqrt(), 1e-6);
+    assert_near(value(&notes, "half_way"), 0.0, 1e-9);
+    // The difference of the ends, also where the integrand is seen from inside the body.
+    assert_near(value(&notes, "rise"), value(&notes, "risen"), 1e-7);
+}
+
+#[test]
+fn tangents_and_curvatures_are_those_of_the_curve() {
+    let (_, notes) = ran();
+    // Half a circle of radius 1, counter-clockwise. Parabolas through arcs of an angle a turn by a (1 - a^2/16); the rest are kinks between
+    // them. Here a is up to 0.52.
+    assert_near(value(&notes, "turned"), std::f64::consts::PI, 5e-2);
+    assert_near(value(&notes, "bend"), 1.0, 3e-2);
+    // The left of the right side, which runs upwards, is inside.
+    assert_near(value(&notes, "inwards"), -1.0, 1e-12);
+}
+
+#[test]
 fn mesh_sizes_hold_at_the_ends_of_paths() {
     let (simulation, _) = ran();
     let mesh = &simulation.system().mesh;

@@ -10,7 +10,7 @@ use crate::syntax::ast;
 use ansatz_units::{Dimension, Rational};
 
 /// Functions whose arguments are values.
-const PLAIN: [(&str, Builtin); 30] = [
+const PLAIN: [(&str, Builtin); 33] = [
     ("sqrt", Builtin::Scalar(ScalarFunction::Sqrt)),
     ("exp", Builtin::Scalar(ScalarFunction::Exp)),
     ("ln", Builtin::Scalar(ScalarFunction::Ln)),
@@ -41,6 +41,9 @@ const PLAIN: [(&str, Builtin); 30] = [
     ("norm", Builtin::Norm),
     ("grad", Builtin::Grad),
     ("div", Builtin::Div),
+    ("along", Builtin::Along),
+    ("hoop", Builtin::Hoop),
+    ("perp", Builtin::Perp),
 ];
 
 /// Functions that look at more than the values of their arguments.
@@ -185,7 +188,14 @@ impl Checker<'_> {
                 (Shape::Vector, d) => Type::Value(Shape::Tensor, d / Dimension::LENGTH),
                 (Shape::Tensor, _) => return Err(self.wrong_shape(&items[0], name, "a scalar or a vector")),
             },
-            Builtin::Div => scalar(self.shaped(&items[0], Shape::Vector, name)? / Dimension::LENGTH),
+            Builtin::Along => {
+                let (shape, d) = self.operand(&items[0])?;
+                Type::Value(shape, d / Dimension::LENGTH)
+            }
+            Builtin::Perp => Type::Value(Shape::Vector, self.shaped(&items[0], Shape::Vector, name)?),
+            Builtin::Div | Builtin::Hoop => {
+                scalar(self.shaped(&items[0], Shape::Vector, name)? / Dimension::LENGTH)
+            }
             Builtin::Polar => Type::POSITION,
         })
     }

@@ -1,6 +1,6 @@
 //! What is known where: before the run, at one time, at the points of a domain, after the run.
 
-use crate::model::{Domain, Expr, ExprKind};
+use crate::model::{Builtin, Domain, Expr, ExprKind};
 
 /// What an expression may be made of, beyond parameters and numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,7 +112,9 @@ pub(super) fn ingredient(e: &Expr) -> Option<Ingredient> {
         ExprKind::Test(_) => Ingredient::Test,
         ExprKind::State(_) => Ingredient::State,
         ExprKind::Time => Ingredient::Time,
-        ExprKind::Coordinate(_) | ExprKind::Normal(_) => Ingredient::Coordinate,
+        ExprKind::Coordinate(_)
+        | ExprKind::Normal(_)
+        | ExprKind::Builtin(Builtin::Along | Builtin::Hoop, _) => Ingredient::Coordinate,
         ExprKind::MatchRegion(..) => Ingredient::Region,
         ExprKind::Gap(_) => Ingredient::Gap,
         ExprKind::Reduce(..) | ExprKind::Force(..) | ExprKind::AtPoint(..) => Ingredient::Functional,

@@ -106,6 +106,10 @@ impl Checker<'_> {
             Symbol::Coordinate(i) => (ExprKind::Coordinate(i), Type::LENGTH),
             Symbol::Word(Word::Time) => (ExprKind::Time, Type::TIME),
             Symbol::Word(Word::Pi) => (ExprKind::Number(std::f64::consts::PI), Type::NUMBER),
+            Symbol::Word(Word::Position) => {
+                let coordinate = |axis| Expr { kind: ExprKind::Coordinate(axis), ty: Type::LENGTH, span };
+                (ExprKind::Tuple(Box::new([coordinate(0), coordinate(1)])), Type::POSITION)
+            }
             Symbol::Word(Word::Identity) => {
                 (ExprKind::Identity, Type::Value(Shape::Tensor, Dimension::NUMBER))
             }

@@ -107,7 +107,10 @@ fn builtin_degree(
         | Builtin::Dev
         | Builtin::Diag
         | Builtin::Grad
-        | Builtin::Div => common(items.iter().map(|item| (item, of(item)))),
+        | Builtin::Div
+        | Builtin::Along
+        | Builtin::Hoop
+        | Builtin::Perp => common(items.iter().map(|item| (item, of(item)))),
         Builtin::Dot | Builtin::Inner | Builtin::Outer | Builtin::Cross => {
             items.iter().try_fold(Some(0), |sum, item| product(sum, of(item)?))
         }

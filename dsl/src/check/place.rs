@@ -6,8 +6,8 @@ use super::domain::piece_words;
 use super::walk::{Definition, check_exprs, deep, no_circles};
 use crate::diagnostic::{Code, Diagnostic, Sink};
 use crate::model::{
-    Action, Bounds, Domain, Every, Expr, ExprKind, Field, Model, ParamId, Piece, RegionId, SegmentKind,
-    Start, StatementKind, Trigger,
+    Action, Bounds, Builtin, Domain, Every, Expr, ExprKind, Field, Model, ParamId, Piece, RegionId,
+    SegmentKind, Start, StatementKind, Trigger,
 };
 use crate::source::Span;
 use std::collections::BTreeSet;
@@ -308,6 +308,7 @@ impl<'m> Placer<'m, '_> {
             ExprKind::State(id) => format!("state `{}`", model.states[id.0].name),
             ExprKind::Coordinate(i) => format!("coordinate `{}`", model.coordinates.names[*i]),
             ExprKind::Normal(_) => "a normal".into(),
+            ExprKind::Builtin(..) => "a derivative in space".into(),
             ExprKind::Gap(id) => format!("`{}.gap`", model.pairs[id.0].name),
             ExprKind::Time => "the time `t`".into(),
             ExprKind::MatchRegion(..) => "a choice by region".into(),
@@ -327,6 +328,12 @@ impl<'m> Placer<'m, '_> {
             }
             ExprKind::Normal(_) if super::domain::kind(domain) != super::domain::Kind::Edges => {
                 self.missing(via.unwrap_or(e.span), e.span, domain, "a normal exists on paths only".into());
+            }
+            ExprKind::Builtin(Builtin::Along, _)
+                if super::domain::kind(domain) != super::domain::Kind::Edges =>
+            {
+                let message = "a derivative along a path exists on paths only".into();
+                self.missing(via.unwrap_or(e.span), e.span, domain, message);
             }
             ExprKind::Gap(id) => {
                 let here = domain

@@ -83,7 +83,11 @@ fn source(slots: &Slots, sources: Sources<'_>, kind: SymbolKind) -> Source {
             let number = Literal::usize_unsuffixed(number);
             Source::Read(quote!(run[#number]))
         }
-        SymbolKind::Field(_) | SymbolKind::FieldRate(_) | SymbolKind::Normal(..) => {
+        SymbolKind::Field(_)
+        | SymbolKind::FieldRate(_)
+        | SymbolKind::Normal(..)
+        | SymbolKind::Tangent(_)
+        | SymbolKind::Curvature(_) => {
             let position = sources.inputs.iter().position(|input| *input == kind).unwrap_or(0);
             let position = Literal::usize_unsuffixed(position);
             Source::Read(quote!(inputs[#position]))

@@ -144,21 +144,30 @@ fn normals(lowering: &Lowering<'_>, roots: &[Id]) -> Vec<SymbolKind> {
     side.into_iter().flat_map(|side| [0, 1].map(|axis| SymbolKind::Normal(side, axis))).collect()
 }
 
+/// What every function at a point finds behind its other inputs.
+const SHAPE_OF_PATH: [SymbolKind; 4] =
+    [SymbolKind::Tangent(0), SymbolKind::Tangent(1), SymbolKind::Curvature(0), SymbolKind::Curvature(1)];
+
 /// `PointFunction { .. }`.
 pub fn point_function(lowering: &mut Lowering<'_>, slots: &Slots, form: &PointForm) -> TokenStream {
     let model = lowering.model;
     let mut kinds: Vec<SymbolKind> = form.inputs.iter().map(|input| input.kind()).collect();
     let inputs = form.inputs.iter().map(|one| {
         let [field, component] = [one.input.field.0, one.input.component].map(Literal::usize_unsuffixed);
-        let derivative = match one.input.derivative.map(Literal::usize_unsuffixed) {
-            Some(direction) => quote!(Some(Derivative::Direction(#direction))),
+        let derivative = match one.input.derivative {
             None => quote!(None),
+            Some(crate::lower::Derivative::Along) => quote!(Some(Derivative::Along)),
+            Some(crate::lower::Derivative::Coordinate(direction)) => {
+                let direction = Literal::usize_unsuffixed(direction);
+                quote!(Some(Derivative::Direction(#direction)))
+            }
         };
         let rate = one.rate;
         quote!(PointInput { field: #field, component: #component, derivative: #derivative, rate: #rate })
     });
     let all: Vec<Id> = form.outputs.concat();
     kinds.extend(normals(lowering, &all));
+    kinds.extend(SHAPE_OF_PATH);
     let reads_point = reads(lowering, &all, |kind| matches!(kind, SymbolKind::Coordinate(_)));
     let reads_table = reads(lowering, &all, |kind| matches!(kind, SymbolKind::Table(_)));
     let regions = match &form.region {
@@ -185,7 +194,10 @@ pub fn point_function(lowering: &mut Lowering<'_>, slots: &Slots, form: &PointFo
     };
     let name = |used: bool, name: TokenStream| if used { name } else { quote!(_) };
     let (region, x) = (name(chooses, quote!(region)), name(reads_point, quote!(x)));
-    let (values, g) = (name(!kinds.is_empty(), quote!(inputs)), name(reads_globals, quote!(g)));
+    let (values, g) = (
+        name(reads(lowering, &all, |kind| kinds.contains(&kind)), quote!(inputs)),
+        name(reads_globals, quote!(g)),
+    );
     quote!(PointFunction {
         inputs: &[#(#inputs),*],
         outputs: #outputs,

@@ -14,8 +14,13 @@ pub fn helpers(kernels: &[&Kernel]) -> TokenStream {
     let triangle = any(&|kernel| kernel.cell == Cell::Triangle).then(triangle);
     let segment = any(&|kernel| kernel.cell == Cell::Segment).then(segment);
     let gradients = |kernel: &Kernel| kernel.uses.iter().any(|one| kernel.needs_gradients(one.field));
-    let pull_back = any(&gradients).then(pull_back);
-    quote!(#lower #coordinate #triangle #segment #pull_back)
+    let of = |cell: Cell| move |kernel: &Kernel| kernel.cell == cell && gradients(kernel);
+    let pull_back = any(&of(Cell::Triangle)).then(pull_back);
+    let along = any(&of(Cell::Segment)).then(along);
+    let bends = |kernel: &Kernel| kernel.curvature.contains(&true);
+    let curvature = any(&bends).then(curvature);
+    let tangent = any(&|kernel| bends(kernel) || kernel.tangent.contains(&true)).then(tangent);
+    quote!(#lower #coordinate #triangle #segment #pull_back #along #tangent #curvature)
 }
 
 fn lower() -> TokenStream {
@@ -92,6 +97,50 @@ fn pull_back() -> TokenStream {
                 }
             }
             gradients
+        }
+    }
+}
+
+fn along() -> TokenStream {
+    quote! {
+        /// Derivatives of basis functions by the arc length of an edge.
+        #[inline(always)]
+        fn along<S: Simd, const N: usize>(s: S, measure: Lane<S>, reference: &[[f64; 1]; N]) -> [Lane<S>; N] {
+            let reciprocal = Lane::splat(s, 1.0) / measure;
+            let mut slopes = [reciprocal; N];
+            for a in 0..N {
+                slopes[a] = reciprocal * Lane::splat(s, reference[a][0]);
+            }
+            slopes
+        }
+    }
+}
+
+fn tangent() -> TokenStream {
+    quote! {
+        /// Unit tangent of an edge at a point.
+        #[inline(always)]
+        fn tangent<S: Simd, const N: usize>(s: S, x: &[[Lane<S>; 2]; N], gradients: &[[f64; 1]; N], measure: Lane<S>) -> [Lane<S>; 2] {
+            let mut t = [Lane::splat(s, 0.0); 2];
+            for a in 0..N {
+                for i in 0..2 {
+                    t[i] = x[a][i].mul_add(Lane::splat(s, gradients[a][0]), t[i]);
+                }
+            }
+            [t[0] / measure, t[1] / measure]
+        }
+    }
+}
+
+fn curvature() -> TokenStream {
+    quote! {
+        /// Curvature vector of a quadratic edge: the derivative of its tangent by the arc length.
+        #[inline(always)]
+        fn curvature<S: Simd>(s: S, x: &[[Lane<S>; 2]; 3], tangent: [Lane<S>; 2], measure: Lane<S>) -> [Lane<S>; 2] {
+            let scale = Lane::splat(s, 4.0) / (measure * measure);
+            let second = [0, 1].map(|i| scale * (x[0][i] + x[1][i] - x[2][i] - x[2][i]));
+            let part = tangent[0] * second[0] + tangent[1] * second[1];
+            [second[0] - part * tangent[0], second[1] - part * tangent[1]]
         }
     }
 }

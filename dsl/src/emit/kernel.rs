@@ -5,7 +5,7 @@ use super::ident;
 use super::layout::Slots;
 use super::tables::Tables;
 use crate::kernel::{FieldUse, Input, Job, Kernel, POINT, PRELUDE};
-use crate::lower::{FieldInput, Lowering, SymbolKind};
+use crate::lower::{Derivative, FieldInput, Lowering, SymbolKind};
 use crate::scalar::schedule::Schedule;
 use crate::scalar::{Id, symbols_of};
 use ansatz_elements::Cell;
@@ -30,10 +30,35 @@ pub const INVOCATION_AS_PRINTED: &str =
 pub const INVOCATION: &str = "vectorize!(lanes(batch: &Batch<'_>, g: &[f64], out: &mut [Row]));";
 
 /// Variables of every kernel.
-const RESERVED: [&str; 26] = [
-    "s", "o", "batch", "g", "out", "q", "a", "b", "weight", "x", "point", "map", "residual", "tangent",
-    "columns", "total", "node", "v", "zero", "basis", "nodes", "values", "rates", "straight", "measure",
+const RESERVED: [&str; 28] = [
+    "s",
+    "o",
+    "batch",
+    "g",
+    "out",
+    "q",
+    "a",
+    "b",
+    "weight",
+    "x",
+    "point",
+    "map",
+    "residual",
+    "tangent",
+    "columns",
+    "total",
+    "node",
+    "v",
+    "zero",
+    "basis",
+    "nodes",
+    "values",
+    "rates",
+    "straight",
+    "measure",
     "at",
+    "direction",
+    "bend",
 ];
 
 pub(super) struct Emitter<'a, 'm> {
@@ -112,6 +137,8 @@ impl Emitter<'_, '_> {
         !matches!(
             kind,
             SymbolKind::Coordinate(_)
+                | SymbolKind::Tangent(_)
+                | SymbolKind::Curvature(_)
                 | SymbolKind::Field(_)
                 | SymbolKind::FieldRate(_)
                 | SymbolKind::Weight
@@ -254,6 +281,7 @@ impl Emitter<'_, '_> {
         };
         let map = self.map_at(tables, &quote!(q));
         code.push(quote!(let #names = match straight { Some(same) => same, None => #map };));
+        code.push(self.shape_of_path(tables));
         let hoop = kernel.axisymmetric.then(|| {
             let r = self.names.symbol(self.lowering, SymbolKind::Coordinate(0));
             let tau = number(std::f64::consts::TAU);
@@ -264,13 +292,47 @@ impl Emitter<'_, '_> {
         for one in &kernel.uses {
             let field = self.field_name(one);
             if kernel.needs_gradients(one.field) {
-                let (gradient, reference) =
-                    (format_ident!("grad_{field}"), tables.gradients(kernel, one.element));
-                code.push(quote!(let #gradient = pull_back(s, &map, &#reference[q]);));
+                let reference = tables.gradients(kernel, one.element);
+                code.push(match kernel.cell {
+                    Cell::Triangle => {
+                        let gradient = format_ident!("grad_{field}");
+                        quote!(let #gradient = pull_back(s, &map, &#reference[q]);)
+                    }
+                    Cell::Segment => {
+                        let slope = format_ident!("along_{field}");
+                        quote!(let #slope = along(s, measure, &#reference[q]);)
+                    }
+                });
             }
             if kernel.needs_values(one.field) {
                 let (basis, values) = (format_ident!("basis_{field}"), tables.values(kernel, one.element));
                 code.push(quote!(let #basis = &#values[q];));
+            }
+        }
+        quote!(#(#code)*)
+    }
+
+    /// Tangent and curvature of an edge, as far as they are read.
+    fn shape_of_path(&mut self, tables: &mut Tables) -> TokenStream {
+        let kernel = self.kernel;
+        let bends = kernel.curvature.contains(&true);
+        if !bends && !kernel.tangent.contains(&true) {
+            return TokenStream::new();
+        }
+        let gradients = tables.gradients(kernel, kernel.geometry);
+        let mut code = vec![quote!(let direction = tangent(s, &x, &#gradients[q], measure);)];
+        if bends {
+            code.push(quote!(let bend = curvature(s, &x, direction, measure);));
+        }
+        for axis in 0..2 {
+            let at = count(axis);
+            if kernel.tangent[axis] {
+                let name = self.names.symbol(self.lowering, SymbolKind::Tangent(axis));
+                code.push(quote!(let #name = direction[#at];));
+            }
+            if kernel.curvature[axis] {
+                let name = self.names.symbol(self.lowering, SymbolKind::Curvature(axis));
+                code.push(quote!(let #name = bend[#at];));
             }
         }
         quote!(#(#code)*)
@@ -346,7 +408,11 @@ impl Emitter<'_, '_> {
                 let basis = format_ident!("basis_{field}");
                 quote!(Lane::splat(s, #basis[#node]))
             }
-            Some(direction) => {
+            Some(Derivative::Along) => {
+                let slope = format_ident!("along_{field}");
+                quote!(#slope[#node])
+            }
+            Some(Derivative::Coordinate(direction)) => {
                 let (gradient, direction) = (format_ident!("grad_{field}"), count(direction));
                 quote!(#gradient[#node][#direction])
             }

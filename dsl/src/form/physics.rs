@@ -4,7 +4,7 @@ use super::balance::{Balances, state_slopes};
 use super::vary::{Origin, Term, Variation, linearise};
 use super::{Builder, Contact, Coupling, Hold};
 use crate::derive;
-use crate::lower::{Lowered, Lowering, Region, SymbolKind, Value, internal, unsupported};
+use crate::lower::{Lowered, Lowering, Region, SymbolKind, Value, internal, is_gradient, unsupported};
 use crate::model::{BlockId, Domain, Expr, FieldId, Piece, Shape, Statement, StatementKind};
 use crate::scalar::{Id, symbols_of};
 use crate::source::Span;
@@ -260,14 +260,14 @@ pub(super) fn check(lowering: &Lowering<'_>, term: &Term) -> Lowered<()> {
     let kinds: Vec<SymbolKind> = symbols.into_iter().map(|symbol| lowering.symbols.kind(symbol)).collect();
     let gradient = |kind: &SymbolKind| match kind {
         SymbolKind::Normal(..) => true,
-        SymbolKind::Field(input) | SymbolKind::FieldRate(input) => input.derivative.is_some(),
+        SymbolKind::Field(input) | SymbolKind::FieldRate(input) => is_gradient(*input),
         _ => false,
     };
     let on_edges = matches!(term.region, Region::Edges(_));
-    if on_edges && (kinds.iter().any(gradient) || term.tests.iter().any(|test| test.derivative.is_some())) {
+    if on_edges && (kinds.iter().any(gradient) || term.tests.iter().any(|test| is_gradient(*test))) {
         return Err(unsupported(
             term.span,
-            "gradients and normals in statements on paths are not supported; only values and rates of fields are",
+            "gradients and normals out of regions in statements on paths are not supported; the derivative along the path is `along(e)`",
         ));
     }
     let energy_of_quantity = term.block.is_some()

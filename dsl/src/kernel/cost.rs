@@ -77,9 +77,13 @@ fn map(kernel: &Kernel) -> usize {
 fn geometry(kernel: &Kernel) -> usize {
     let coordinates = kernel.coordinates.iter().filter(|&&read| read).count();
     let weight = if kernel.axisymmetric { 3 } else { 1 };
-    let gradients = |one: &FieldUse| if kernel.needs_gradients(one.field) { 6 * one.nodes() } else { 0 };
+    let of_path = 12 * kernel.tangent.iter().chain(&kernel.curvature).filter(|&&read| read).count();
+    let per_node = if kernel.cell == Cell::Triangle { 6 } else { 1 };
+    let gradients =
+        |one: &FieldUse| if kernel.needs_gradients(one.field) { per_node * one.nodes() } else { 0 };
     2 * kernel.geometry.nodes().len() * coordinates
         + weight
+        + of_path
         + kernel.uses.iter().map(gradients).sum::<usize>()
 }
 

@@ -1,7 +1,7 @@
 //! Runs a kernel on one element in plain arithmetic: the meaning of a kernel, against which emitted code can be held.
 
 use super::{Flux, Input, Job, Kernel, Tangent};
-use crate::lower::{FieldInput, Lowering, SymbolKind};
+use crate::lower::{Derivative, FieldInput, Lowering, SymbolKind};
 use crate::scalar::eval;
 use ansatz_elements::Element;
 use std::f64::consts::TAU;
@@ -19,13 +19,16 @@ pub struct ElementData {
 struct Basis {
     values: Vec<f64>,
     gradients: Vec<[f64; 2]>,
+    /// Derivatives by the arc length of an edge.
+    along: Vec<f64>,
 }
 
 impl Basis {
-    fn read(&self, node: usize, derivative: Option<usize>) -> f64 {
+    fn read(&self, node: usize, derivative: Option<Derivative>) -> f64 {
         match derivative {
             None => self.values[node],
-            Some(direction) => self.gradients[node][direction],
+            Some(Derivative::Coordinate(direction)) => self.gradients[node][direction],
+            Some(Derivative::Along) => self.along[node],
         }
     }
 }
@@ -48,6 +51,8 @@ pub fn run(
             SymbolKind::Field(input) => interpolated(Input { input, rate: false }),
             SymbolKind::FieldRate(input) => interpolated(Input { input, rate: true }),
             SymbolKind::Coordinate(axis) => map.x[axis],
+            SymbolKind::Tangent(axis) => map.tangent()[axis],
+            SymbolKind::Curvature(axis) => map.curvature(element)[axis],
             SymbolKind::Weight => weight * map.measure * hoop,
             kind => globals(kind),
         });
@@ -88,7 +93,23 @@ impl Map {
             &[g0, g1] => [(d * g0 - c * g1) / self.measure, (a * g1 - b * g0) / self.measure],
             _ => [0.0; 2],
         };
-        Basis { values, gradients: reference.iter().map(pulled).collect() }
+        let along = reference.iter().map(|g| g[0] / self.measure).collect();
+        Basis { values, gradients: reference.iter().map(pulled).collect(), along }
+    }
+
+    /// Unit tangent of an edge.
+    fn tangent(&self) -> [f64; 2] {
+        [0, 1].map(|axis: usize| self.jacobian[axis][0] / self.measure)
+    }
+
+    /// Derivative of the tangent of a quadratic edge by its arc length.
+    fn curvature(&self, element: &ElementData) -> [f64; 2] {
+        let [a, b, m] = [0, 1, 2].map(|node: usize| element.nodes[node]);
+        let second =
+            [0, 1].map(|axis: usize| 4.0 * (a[axis] + b[axis] - 2.0 * m[axis]) / self.measure.powi(2));
+        let tangent = self.tangent();
+        let part = tangent[0] * second[0] + tangent[1] * second[1];
+        [0, 1].map(|axis: usize| second[axis] - part * tangent[axis])
     }
 }
 

@@ -43,6 +43,10 @@ pub struct Kernel {
     pub inputs: Vec<Input>,
     /// Which coordinates of the point are read.
     pub coordinates: [bool; 2],
+    /// Which components of the unit tangent of an edge are read.
+    pub tangent: [bool; 2],
+    /// Which components of its curvature vector are read.
+    pub curvature: [bool; 2],
     /// What is added up.
     pub job: Job,
     /// Everything that the job adds up, in the order of [`Job::roots`].
@@ -261,12 +265,14 @@ fn build(lowering: &mut Lowering<'_>, term: &Term, name: String, job: Job) -> Ke
     let symbols = &lowering.symbols;
     let schedule = Schedule::new(&lowering.pool, &roots, &|symbol| stage_of(symbols.kind(symbol)));
     let mut inputs = Vec::new();
-    let mut coordinates = [false; 2];
+    let (mut coordinates, mut tangent, mut curvature) = ([false; 2], [false; 2], [false; 2]);
     for symbol in symbols_of(&lowering.pool, &roots) {
         match symbols.kind(symbol) {
             SymbolKind::Field(input) => inputs.push(Input { input, rate: false }),
             SymbolKind::FieldRate(input) => inputs.push(Input { input, rate: true }),
             SymbolKind::Coordinate(axis) => coordinates[axis] = true,
+            SymbolKind::Tangent(axis) => tangent[axis] = true,
+            SymbolKind::Curvature(axis) => curvature[axis] = true,
             _ => {}
         }
     }
@@ -284,6 +290,8 @@ fn build(lowering: &mut Lowering<'_>, term: &Term, name: String, job: Job) -> Ke
         rule: rule(cell, term.degree),
         inputs,
         coordinates,
+        tangent,
+        curvature,
         job,
         schedule,
     }
@@ -330,9 +338,12 @@ fn uses(lowering: &Lowering<'_>, term: &Term, cell: Cell) -> Vec<FieldUse> {
 
 fn stage_of(kind: SymbolKind) -> Stage {
     match kind {
-        SymbolKind::Coordinate(_) | SymbolKind::Field(_) | SymbolKind::FieldRate(_) | SymbolKind::Weight => {
-            POINT
-        }
+        SymbolKind::Coordinate(_)
+        | SymbolKind::Tangent(_)
+        | SymbolKind::Curvature(_)
+        | SymbolKind::Field(_)
+        | SymbolKind::FieldRate(_)
+        | SymbolKind::Weight => POINT,
         _ => PRELUDE,
     }
 }

@@ -135,7 +135,7 @@ pub(super) fn builtin(pool: &mut Pool, builtin: Builtin, arguments: &[Value]) ->
             let a = tensor_of(pool, first)?;
             of_tensor(pool, builtin, &a)
         }
-        B::Grad | B::Div | B::Polar => return None,
+        B::Grad | B::Div | B::Along | B::Hoop | B::Perp | B::Polar => return None,
     })
 }
 

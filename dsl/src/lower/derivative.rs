@@ -1,7 +1,7 @@
-//! Derivatives that the language writes: `dt`, `grad` and `diff`. All use the exact chain rule of the scalar stage.
+//! Derivatives that the language writes: `dt`, `grad`, `along` and `diff`. All use the exact chain rule of the scalar stage.
 
 use super::value::tensor;
-use super::{FieldInput, Lowered, Lowering, SymbolKind, Value, internal, unsupported};
+use super::{Derivative, FieldInput, Lowered, Lowering, SymbolKind, Value, internal, unsupported};
 use crate::derive;
 use crate::model::{Expr, ExprKind, Frame};
 use crate::scalar::{Id, Symbol, substitute, symbols_of};
@@ -40,7 +40,8 @@ impl<'m> Lowering<'m> {
         if matches!(value, Value::Zero) {
             return Ok(Value::Zero);
         }
-        let along = [self.derivative_along(value, 0, span)?, self.derivative_along(value, 1, span)?];
+        let by = |direction| Derivative::Coordinate(direction);
+        let along = [self.partial(value, by(0), span)?, self.partial(value, by(1), span)?];
         let axes = self.model.coordinates.frame.axes();
         match (value, along) {
             (Value::Scalar(_), [Value::Scalar(a), Value::Scalar(b)]) => {
@@ -76,15 +77,43 @@ impl<'m> Lowering<'m> {
         gradient[1] = self.pool.neg(turned);
     }
 
-    fn derivative_along(&mut self, value: &Value, direction: usize, span: Span) -> Lowered<Value> {
+    /// `along(value)`: the derivative of every component by the arc length of the path.
+    pub(super) fn along(&mut self, value: &Value, span: Span) -> Lowered<Value> {
+        self.partial(value, Derivative::Along, span)
+    }
+
+    /// `hoop(v)`: `v_r/r` in axisymmetric models, else zero.
+    pub(super) fn hoop(&mut self, value: &Value, span: Span) -> Lowered<Value> {
+        match (value, self.model.coordinates.frame) {
+            (Value::Vector(v), Frame::Axisymmetric) => {
+                let r = self.input(SymbolKind::Coordinate(0));
+                Ok(Value::Scalar(self.pool.div(v[0], r)))
+            }
+            (Value::Vector(_) | Value::Zero, _) => Ok(Value::Scalar(self.pool.zero())),
+            _ => Err(internal(span, "a vector was expected")),
+        }
+    }
+
+    fn partial(&mut self, value: &Value, by: Derivative, span: Span) -> Lowered<Value> {
         self.chain(value, span, &mut |lowering, kind| {
-            let (make, input): (fn(FieldInput) -> SymbolKind, FieldInput) = match kind {
-                SymbolKind::Coordinate(axis) => return Ok((axis == direction).then(|| lowering.pool.one())),
-                SymbolKind::Field(input) => (SymbolKind::Field, input),
-                SymbolKind::FieldRate(input) => (SymbolKind::FieldRate, input),
-                SymbolKind::Frozen(input) => (SymbolKind::Frozen, input),
-                SymbolKind::Test(input) => (SymbolKind::Test, input),
-                SymbolKind::Bound(_) | SymbolKind::BoundRate(_) => {
+            let (make, input): (fn(FieldInput) -> SymbolKind, FieldInput) = match (kind, by) {
+                (SymbolKind::Coordinate(axis), Derivative::Coordinate(direction)) => {
+                    return Ok((axis == direction).then(|| lowering.pool.one()));
+                }
+                (SymbolKind::Coordinate(axis), Derivative::Along) => {
+                    return Ok(Some(lowering.input(SymbolKind::Tangent(axis))));
+                }
+                (SymbolKind::Tangent(axis), Derivative::Along) => {
+                    return Ok(Some(lowering.input(SymbolKind::Curvature(axis))));
+                }
+                (SymbolKind::Tangent(_) | SymbolKind::Curvature(_) | SymbolKind::Normal(..), _) => {
+                    return Err(unsupported(span, "this derivative of the shape of a path is not known"));
+                }
+                (SymbolKind::Field(input), _) => (SymbolKind::Field, input),
+                (SymbolKind::FieldRate(input), _) => (SymbolKind::FieldRate, input),
+                (SymbolKind::Frozen(input), _) => (SymbolKind::Frozen, input),
+                (SymbolKind::Test(input), _) => (SymbolKind::Test, input),
+                (SymbolKind::Bound(_) | SymbolKind::BoundRate(_), _) => {
                     return Err(unsupported(span, "a gradient of the variable of `diff`"));
                 }
                 _ => return Ok(None),
@@ -95,7 +124,7 @@ impl<'m> Lowering<'m> {
                     "second derivatives in space are not supported; declare the gradient as a field",
                 ));
             }
-            Ok(Some(lowering.input(make(FieldInput { derivative: Some(direction), ..input }))))
+            Ok(Some(lowering.input(make(FieldInput { derivative: Some(by), ..input }))))
         })
     }
 

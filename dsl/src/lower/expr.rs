@@ -251,6 +251,15 @@ impl<'m> Lowering<'m> {
         let values = self.exprs(arguments)?;
         match (builtin, values.as_slice()) {
             (Builtin::Grad, [of]) => self.grad(of, span),
+            (Builtin::Along, [of]) => self.along(of, span),
+            (Builtin::Hoop, [of]) => self.hoop(of, span),
+            (Builtin::Perp, [of]) => {
+                let v = algebra::vector(&mut self.pool, of)
+                    .ok_or_else(|| internal(span, "a vector was expected"))?;
+                let [a, b] = self.model.coordinates.frame.axes().map(|axis| v[axis]);
+                let turned = [self.pool.neg(b), a];
+                Ok(self.in_plane(turned))
+            }
             (Builtin::Div, [of]) => match self.grad(of, span)? {
                 Value::Tensor(gradient) => Ok(Value::Scalar(algebra::trace(&mut self.pool, &gradient))),
                 other => Ok(other),

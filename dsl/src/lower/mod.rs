@@ -26,7 +26,8 @@ use crate::source::Span;
 pub use names::{input_name, piece_name, region_names, symbol_name};
 pub use quantity::{Part, Quantity, QuantityKind, Region};
 pub use reduce::RunValue;
-pub use symbol::{FieldInput, SymbolKind, Symbols};
+pub(crate) use side::is_gradient;
+pub use symbol::{Derivative, FieldInput, SymbolKind, Symbols};
 pub use value::{Condition, Value};
 
 /// What a lowering gives: a value, or what the compiler cannot do.

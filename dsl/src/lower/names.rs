@@ -1,6 +1,6 @@
 //! Readable names of symbols and domains, for listings and emitted code.
 
-use super::{FieldInput, Lowering, Region, SymbolKind, Value};
+use super::{Derivative, FieldInput, Lowering, Region, SymbolKind, Value};
 use crate::model::{Builtin, Expr, ExprKind, Frame, Model, Piece, Shape};
 use crate::scalar::Id;
 
@@ -13,7 +13,10 @@ pub fn input_name(model: &Model, input: FieldInput) -> String {
     };
     match input.derivative {
         None => value,
-        Some(direction) => format!("d{value}_d{}", model.coordinates.names[direction]),
+        Some(Derivative::Coordinate(direction)) => {
+            format!("d{value}_d{}", model.coordinates.names[direction])
+        }
+        Some(Derivative::Along) => format!("d{value}_ds"),
     }
 }
 
@@ -34,6 +37,8 @@ pub fn symbol_name(lowering: &Lowering<'_>, kind: SymbolKind) -> String {
         K::Quantity(quantity) => lowering.quantities[quantity].name.clone(),
         K::QuantityRate(quantity) => format!("dt_{}", lowering.quantities[quantity].name),
         K::Coordinate(axis) => model.coordinates.names[axis].clone(),
+        K::Tangent(axis) => format!("tangent_{}", model.coordinates.names[axis]),
+        K::Curvature(axis) => format!("curvature_{}", model.coordinates.names[axis]),
         K::Field(input) => input_name(model, input),
         K::FieldRate(input) => format!("dt_{}", input_name(model, input)),
         K::Frozen(input) => format!("frozen_{}", input_name(model, input)),

@@ -4,7 +4,9 @@ use super::{
     Lowered, Lowering, Part, Place, Quantity, QuantityKind, Region, SymbolKind, Value, internal, unsupported,
 };
 use crate::check::walk::deep;
-use crate::model::{Domain, EventId, Expr, ExprKind, FieldId, Piece, Reduction, RegionId, Shape, Type};
+use crate::model::{
+    Builtin, Domain, EventId, Expr, ExprKind, FieldId, PathId, Piece, Reduction, RegionId, Shape, Type,
+};
 use crate::scalar::Id;
 use crate::source::Span;
 use ansatz_units::Dimension;
@@ -162,25 +164,36 @@ impl<'m> Lowering<'m> {
         Ok(Value::from_components(&values))
     }
 
-    /// Where a value at a point is looked up: in all regions, or where fields in it live on paths only, on the paths that they share.
+    /// Where a value at a point is looked up: in all regions, or where fields in it live on paths only or it has derivatives along a path, on
+    /// the paths that carry all its fields.
     fn around_points(&self, of: &'m Expr, span: Span) -> Lowered<Region> {
         let model = self.model;
-        let mut fields = BTreeSet::new();
-        deep(model, of, &mut |e| {
-            if let ExprKind::Field(field) = e.kind {
-                fields.insert(field);
-            }
+        let (mut fields, mut along) = (BTreeSet::new(), false);
+        deep(model, of, &mut |e| match e.kind {
+            ExprKind::Field(field) => drop(fields.insert(field)),
+            ExprKind::Builtin(Builtin::Along, _) => along = true,
+            _ => {}
         });
-        let pieces = |field: &FieldId| &model.fields[field.0].domain.pieces;
-        let in_cells = |field: &FieldId| pieces(field).iter().any(|piece| matches!(piece, Piece::Region(_)));
-        let Some(alone) = fields.iter().find(|field| !in_cells(field)) else {
-            return Ok(Region::Cells((0..model.geometry.regions.len()).map(RegionId).collect()));
+        let in_cells = |field: &FieldId| {
+            model.fields[field.0].domain.pieces.iter().any(|piece| matches!(piece, Piece::Region(_)))
         };
-        let shared = |piece: &Piece| {
+        if !along && fields.iter().all(in_cells) {
+            return Ok(Region::Cells((0..model.geometry.regions.len()).map(RegionId).collect()));
+        }
+        let carries_all = |piece: &Piece| {
             let domain = Domain { pieces: vec![*piece], span };
             fields.iter().all(|field| model.without(&model.fields[field.0], &domain).is_none())
         };
-        let paths: Vec<Piece> = pieces(alone).iter().copied().filter(shared).collect();
+        let labelled = |(path, definition): (usize, &crate::model::Path)| {
+            let labels =
+                definition.segments.iter().enumerate().filter(|(_, segment)| segment.label.is_some());
+            let segments = labels.map(move |(at, _)| Piece::Segment(PathId(path), at));
+            std::iter::once(Piece::Path(PathId(path))).chain(segments).collect::<Vec<_>>()
+        };
+        let pieces = model.geometry.paths.iter().enumerate().flat_map(labelled);
+        let mut paths: Vec<Piece> = pieces.filter(carries_all).collect();
+        let whole = paths.clone();
+        paths.retain(|piece| !matches!(piece, Piece::Segment(p, _) if whole.contains(&Piece::Path(*p))));
         if paths.is_empty() {
             return Err(unsupported(span, "no path carries all the fields of this value"));
         }

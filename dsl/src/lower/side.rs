@@ -1,6 +1,8 @@
 //! Edges as seen from one side: normals, and gradients, which differ between the two sides of a path.
 
-use super::{Lowered, Lowering, Place, Region, SymbolKind, Value, internal, unsupported};
+use super::{
+    Derivative, FieldInput, Lowered, Lowering, Place, Region, SymbolKind, Value, internal, unsupported,
+};
 use crate::model::{Domain, Piece, RegionId};
 use crate::scalar::{Id, symbols_of};
 use crate::source::Span;
@@ -39,7 +41,7 @@ impl Lowering<'_> {
         for symbol in symbols_of(&self.pool, &[density]) {
             match self.symbols.kind(symbol) {
                 SymbolKind::Normal(side, _) => drop(sides.insert(side)),
-                SymbolKind::Field(input) | SymbolKind::FieldRate(input) if input.derivative.is_some() => {
+                SymbolKind::Field(input) | SymbolKind::FieldRate(input) if is_gradient(input) => {
                     fields.insert(input.field);
                 }
                 _ => {}
@@ -78,4 +80,9 @@ impl Lowering<'_> {
         }
         Ok(Some(regions))
     }
+}
+
+/// Whether the input has different values on the two sides of an edge.
+pub(crate) fn is_gradient(input: FieldInput) -> bool {
+    matches!(input.derivative, Some(Derivative::Coordinate(_)))
 }

@@ -12,8 +12,17 @@ pub struct FieldInput {
     pub field: FieldId,
     /// Stored component: in-plane direction 0 or 1 of a vector, 0 of a scalar.
     pub component: usize,
-    /// In-plane direction of the derivative; `None` for the value.
-    pub derivative: Option<usize>,
+    /// Which derivative; `None` for the value.
+    pub derivative: Option<Derivative>,
+}
+
+/// By what a field is differentiated in space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Derivative {
+    /// By in-plane coordinate 0 or 1.
+    Coordinate(usize),
+    /// By the arc length of the reference path, in its direction.
+    Along,
 }
 
 /// Meaning of a symbol. The order is the order in which code reads them.
@@ -37,6 +46,10 @@ pub enum SymbolKind {
     QuantityRate(usize),
     /// In-plane coordinate of the reference point.
     Coordinate(usize),
+    /// In-plane component of the unit tangent of the reference path.
+    Tangent(usize),
+    /// In-plane component of its curvature vector, the derivative of the tangent by the arc length.
+    Curvature(usize),
     /// A field at the point.
     Field(FieldInput),
     /// Its time derivative.

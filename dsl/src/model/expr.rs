@@ -125,6 +125,12 @@ pub enum Builtin {
     Grad,
     /// `div(v) = tr(grad(v))`.
     Div,
+    /// `along(e)`: derivative by the arc length of the reference path, in its direction.
+    Along,
+    /// `hoop(v) = v_r/r` of a vector, 0 in plane coordinates: what turning about the axis adds to a gradient.
+    Hoop,
+    /// `perp(v)`: the in-plane part of a vector, turned by a right angle counter-clockwise.
+    Perp,
     /// `polar(centre, radius, angle)`: a point.
     Polar,
 }

@@ -65,6 +65,8 @@ pub enum Word {
     Pi,
     /// `I`
     Identity,
+    /// `position`, the reference position.
+    Position,
     /// `axis`
     Axis,
     /// `region`, what a `match region` looks at.
@@ -77,10 +79,11 @@ pub enum Word {
 
 impl Word {
     /// All of them with their spelling.
-    pub const ALL: [(&'static str, Word); 7] = [
+    pub const ALL: [(&'static str, Word); 8] = [
         ("t", Word::Time),
         ("pi", Word::Pi),
         ("I", Word::Identity),
+        ("position", Word::Position),
         ("axis", Word::Axis),
         ("region", Word::Region),
         ("run", Word::Run),

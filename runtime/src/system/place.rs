@@ -98,6 +98,15 @@ impl Place {
         Self::on_edge(mesh, edge, s + NUDGE * (0.5 - s))
     }
 
+    /// The place in a cell with the path that it is on, its tangent and curvature.
+    pub fn on_path(mut self, path: [[f64; 2]; 2]) -> Self {
+        self.path = path;
+        for basis in self.quadratic.iter_mut().chain(&mut self.linear) {
+            basis[3] = basis[1] * path[0][0] + basis[2] * path[0][1];
+        }
+        self
+    }
+
     /// The unknowns that one input is a sum of, with their weights.
     pub fn weights<'a>(
         &'a self,

@@ -47,6 +47,7 @@ impl Sampler {
             self.inputs.push(place.weights(input, unknowns).map(|(u, w)| w * from[u]).sum());
         }
         self.inputs.extend_from_slice(further);
+        self.inputs.extend_from_slice(place.path.as_flattened());
         let region = place.region.and_then(|region| self.region[region]).unwrap_or(0);
         (self.function.evaluate)(region, place.x, &self.inputs, at.g, out);
     }

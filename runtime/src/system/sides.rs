@@ -35,7 +35,7 @@ pub fn side_points(
                 let regions = regions.join(", ");
                 Error::Model(format!("`{path}` has edges that do not have exactly one side in {regions}"))
             })?;
-            points_of(mesh, side, weight, &mut points);
+            points_of(mesh, edge, side, weight, &mut points);
         }
     }
     Ok(points)
@@ -52,7 +52,13 @@ fn one_side(mesh: &Mesh, edge: &PathEdge, regions: &[&str]) -> Option<CellEdge> 
     }
 }
 
-fn points_of(mesh: &Mesh, side: CellEdge, weight: fn([f64; 2]) -> f64, points: &mut Vec<SidePoint>) {
+fn points_of(
+    mesh: &Mesh,
+    path: &PathEdge,
+    side: CellEdge,
+    weight: fn([f64; 2]) -> f64,
+    points: &mut Vec<SidePoint>,
+) {
     let (cell, edge) = (side.cell as usize, usize::from(side.edge));
     let nodes = mesh.cells[cell];
     let along = [nodes[edge], nodes[(edge + 1) % 3], nodes[3 + edge]].map(|n| mesh.nodes[n as usize]);
@@ -65,7 +71,9 @@ fn points_of(mesh: &Mesh, side: CellEdge, weight: fn([f64; 2]) -> f64, points: &
         Element::P2_SEGMENT.gradients(s, &mut slopes);
         let tangent = [0, 1].map(|i| (0..3).map(|k| slopes[k] * along[k][i]).sum::<f64>());
         let length = tangent[0].hypot(tangent[1]);
-        let place = Place::in_cell(mesh, cell, local);
+        let on_path = if along[0] == mesh.nodes[path.nodes[0] as usize] { s[0] } else { 1.0 - s[0] };
+        let shape = Place::on_edge(mesh, path.nodes, on_path).path;
+        let place = Place::in_cell(mesh, cell, local).on_path(shape);
         let weight = part * length * weight(place.x);
         points.push(SidePoint { normal: [tangent[1] / length, -tangent[0] / length], weight, place });
     }

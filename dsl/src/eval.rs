@@ -1,10 +1,11 @@
 //! Numbers at compile time: parameters at their defaults, and what can be judged from them alone.
 //!
-//! - [`check`]: defaults in their ranges, the geometry that they give, laws that meet at their breakpoints;
+//! - [`check`]: defaults in their ranges, the geometry that they give, laws that meet at their breakpoints and end within their reach;
 //! - [`law_tests`]: the tests of the model that need no run.
 
 mod geometry;
 mod laws;
+mod reach;
 mod test;
 
 use crate::diagnostic::{Code, Diagnostic, Sink};
@@ -55,6 +56,7 @@ pub fn check(forms: &mut Forms<'_>, sink: &mut Sink) {
     check_bounds(forms, &parameters, sink);
     geometry::check(forms, &parameters, sink);
     laws::check(&mut forms.lowering, &parameters, sink);
+    reach::check(forms, &parameters, sink);
 }
 
 fn check_bounds(forms: &Forms<'_>, parameters: &[f64], sink: &mut Sink) {

@@ -9,7 +9,7 @@ mod expr;
 
 pub use expr::{
     Arithmetic, Arm, Builtin, Domain, Expr, ExprKind, Piece, Reduction, Relation, ScalarFunction, Shape,
-    Smoothness, Type,
+    Sides, Smoothness, Type,
 };
 
 use crate::source::Span;

@@ -113,6 +113,61 @@ fn what_kernels_cannot_do_is_refused_by_name() {
 }
 
 #[test]
+fn what_cannot_act_on_a_pair_is_refused_by_name() {
+    let model = "field u: Vector[Length] in P2 on square = 0; state s: Number = 0; param q = 1 Pa;
+                 let film = pair(rim.left, rim.right, search: 2 m);\n\
+                 physics rest { energy q*dot(u, u)/(1 m^2) on square; dt(s)*(1 s) == 1; }\n";
+    let refused = |items: &str| codes(&format!("{model}{items}"));
+    let decaying = "physics p { load u with -s*q*exp(-film.gap/(1 cm))*film.normal on current(film); }";
+    assert_eq!(refused(decaying), Vec::<&str>::new());
+    assert_eq!(
+        refused("physics p { load u with -q*film.normal*norm(u)/film.gap on film; }"),
+        ["X901"],
+        "fields"
+    );
+    assert_eq!(
+        refused("physics p { load dot(u, u) with -q/film.gap on film; }"),
+        ["X901"],
+        "work that reads fields"
+    );
+    assert_eq!(refused("physics p { load grad(u) with q*(1 m)*I on film; }"), ["X901"], "gradients");
+    assert_eq!(refused("physics p { energy q*film.gap on current(film); }"), ["X901"], "energies as moved");
+    assert_eq!(
+        refused("physics p { energy q*film.gap*film.normal.x on film; }"),
+        ["X901"],
+        "energies of normals"
+    );
+    assert_eq!(refused("physics p { energy s*q*film.gap on film; }"), ["X901"], "energies of states");
+    assert_eq!(
+        refused("physics p { residual q*dot(test(u), film.normal)*film.gap on film; }"),
+        ["X901"],
+        "residuals"
+    );
+    assert_eq!(
+        refused("state f: Volume ~ 0 m^3; physics p { f == integral(film.gap on current(film)); }"),
+        ["X901"],
+        "equations"
+    );
+}
+
+#[test]
+fn a_force_that_ends_in_a_jump_warns_with_the_numbers() {
+    let film = |d_0: &str| {
+        let model = format!(
+            "field u: Vector[Length] in P2 on square = 0; param d_0 = {d_0}; param P_0 = 100 kPa;\n\
+             physics rest {{ energy P_0*dot(u, u)/(1 m^2) on square; }}\n\
+             let film = pair(rim.left, rim.right, search: 6 um);\n\
+             fn P_rep(d: Length) -> Pressure = P_0/2*(1 + tanh(1 um/d - 1 um/d_0));\n\
+             physics p {{ load u with -P_rep(film.gap)*film.normal on current(film); }}"
+        );
+        let compilation = compiled("film.ansatz", &on_square(&model));
+        render(&compilation.diagnostics, &compilation.sources)
+    };
+    insta::assert_snapshot!("jump_at_search", film("0.588 um"));
+    assert_eq!(film("0.17 um"), "");
+}
+
+#[test]
 fn geometries_are_built_with_the_default_parameters() {
     let text = on_square("")
         .replace("to (0, 1 m)", "to (0.5 m, 1 m)")

@@ -66,6 +66,8 @@ pub struct Program {
     pub pairs: &'static [Pair],
     /// Energies of the gap.
     pub pair_integrals: &'static [PairIntegral],
+    /// Loads on the surfaces of pairs.
+    pub pair_loads: &'static [PairLoad],
     /// Loads on functionals: `R += sum_k c_k grad Z_k`.
     pub couplings: Option<Couplings>,
     /// Equations of the states.
@@ -334,7 +336,23 @@ pub struct Pair {
     pub search: fn(g: &[f64]) -> f64,
 }
 
-/// `energy W(pair.gap) on pair.first` (per reference area of the first side) or on both sides.
+/// Which surfaces of a pair are meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Sides {
+    First,
+    Second,
+    Both,
+}
+
+impl Sides {
+    /// Whether the first (0) or second (1) surface is meant.
+    pub fn has(self, side: usize) -> bool {
+        matches!((self, side), (Self::Both, _) | (Self::First, 0) | (Self::Second, 1))
+    }
+}
+
+/// `energy W(pair.gap) on pair.first`, per reference area.
 pub struct PairIntegral {
     /// What it is.
     pub name: &'static str,
@@ -344,11 +362,48 @@ pub struct PairIntegral {
     pub block: usize,
     /// Pair.
     pub pair: usize,
-    /// Integrated over both sides, else over the first.
-    pub both: bool,
+    /// Surfaces over which it is integrated.
+    pub sides: Sides,
     /// (W, dW/dg, d2W/dg2) per reference area of the slave side, at reference point x.
     pub law: fn(gap: f64, x: [f64; 2], g: &[f64]) -> [f64; 3],
 }
+
+/// `load u with f on pair`: virtual work at the points of surfaces that the other one faces within the search distance.
+pub struct PairLoad {
+    /// What it is.
+    pub name: &'static str,
+    /// Where it stands.
+    pub place: &'static str,
+    /// Physics block.
+    pub block: usize,
+    /// Pair.
+    pub pair: usize,
+    /// Surfaces on which it acts.
+    pub sides: Sides,
+    /// Per area as it has moved, else per reference area.
+    pub current: bool,
+    /// Writes four vectors: the flux against the displacement (minus the force per area), and its derivatives by the gap and by both components
+    /// of the normal.
+    pub law: PairForce,
+    /// Derivative of the flux with respect to states and functionals.
+    pub global_tangent: Option<PairGlobalTangent>,
+}
+
+/// Derivative of the flux of a [`PairLoad`] with respect to some states and functionals.
+pub struct PairGlobalTangent {
+    /// Which ones: the states are numbered first, then the functionals.
+    pub slots: &'static [usize],
+    /// Writes one vector for each of them, its rate included with `alpha`.
+    pub law: PairForceRate,
+}
+
+/// Writes vectors at a point of a pair: of reference position x, on a surface with this unit normal (out of its body, as it has moved).
+pub type PairForce = fn(gap: f64, normal: [f64; 2], x: [f64; 2], g: &[f64], out: &mut [[f64; 2]]);
+/// The same with `alpha`.
+pub type PairForceRate =
+    fn(gap: f64, normal: [f64; 2], x: [f64; 2], g: &[f64], alpha: f64, out: &mut [[f64; 2]]);
+/// A value at a point of a pair, as for [`PairForce`].
+pub type PairValue = fn(gap: f64, normal: [f64; 2], x: [f64; 2], g: &[f64]) -> f64;
 
 /// Coefficients of functionals in the balance: virtual work sum_k c_k delta Z_k.
 pub struct Couplings {
@@ -417,11 +472,14 @@ pub enum ObservableKind {
     Max(Domain, PointFunction),
     /// Value at a reference point.
     Point(fn(g: &[f64]) -> [f64; 2], Domain, PointFunction),
-    /// Smallest f(gap) over the quadrature points of a pair (first side, or both); f is applied to the gap at each point;
-    /// points without a partner within the search distance count as a gap of that distance.
-    PairMin(usize, fn(gap: f64, g: &[f64]) -> f64),
+    /// Smallest value over the quadrature points of a pair's surfaces; `Sides::Both` stands for those that laws act on or other values need, at
+    /// least the first. Points without a partner within the search distance count as a gap of that distance.
+    PairMin(usize, Sides, PairValue),
     /// Largest, likewise.
-    PairMax(usize, fn(gap: f64, g: &[f64]) -> f64),
+    PairMax(usize, Sides, PairValue),
+    /// Integral over the points of a pair's surfaces that the other one faces within the search distance.
+    #[allow(missing_docs)]
+    PairIntegral { pair: usize, sides: Sides, current: bool, function: PairValue },
     /// Component of the resultant that a block puts on the nodes of edges.
     Force {
         /// Physics block.

@@ -6,9 +6,25 @@ pub mod notes;
 pub mod sample;
 
 use ansatz::generated::Program;
+use ansatz::mesh::Mesh;
+use ansatz::system::System;
 
 /// Every compiled model of the repository.
 pub fn programs() -> Vec<&'static Program> {
     let shipped = ansatz_models::PROGRAMS.into_iter().chain(ansatz_examples::PROGRAMS);
     shipped.chain(ansatz_benches::PROGRAMS).chain(models::PROGRAMS).collect()
+}
+
+/// A model on its own mesh, some parameters set.
+///
+/// # Panics
+/// If a parameter is not valid or there is no mesh.
+pub fn system(program: &'static Program, set: &[(&str, &str)]) -> System {
+    let set: Vec<_> = set.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
+    let values = ansatz::settings::resolve(program, &set).expect("valid parameters");
+    let mut g = vec![0.0; program.layout.length];
+    g[program.layout.parameters[0]..program.layout.parameters[1]].copy_from_slice(&values);
+    let geometry = (program.geometry)(&g).expect("a geometry");
+    let mesh = Mesh::generate(&geometry, &(program.sizing)(&g)).expect("a mesh");
+    System::new(program, &values, mesh).expect("a system")
 }

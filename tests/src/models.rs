@@ -10,11 +10,13 @@ ansatz::include_model!("../models/vortices.ansatz");
 ansatz::include_model!("../models/leaking_box.ansatz");
 ansatz::include_model!("../models/named_axis.ansatz");
 ansatz::include_model!("../models/whisker.ansatz");
+ansatz::include_model!("../models/film.ansatz");
+ansatz::include_model!("../models/plates.ansatz");
 
 use ansatz::generated::Program;
 
 /// All of them.
-pub static PROGRAMS: [&Program; 10] = [
+pub static PROGRAMS: [&Program; 12] = [
     &patch_plane::PROGRAM,
     &patch_axi::PROGRAM,
     &crushed::PROGRAM,
@@ -25,4 +27,6 @@ pub static PROGRAMS: [&Program; 10] = [
     &vortices::PROGRAM,
     &leaking_box::PROGRAM,
     &whisker::PROGRAM,
+    &film::PROGRAM,
+    &plates::PROGRAM,
 ];

@@ -278,6 +278,48 @@ fn laws_of_the_gap_have_exact_derivatives_open_and_closed() {
 }
 
 #[test]
+fn loads_on_pairs_have_exact_derivatives_by_gap_normal_and_globals() {
+    for program in programs() {
+        let (states, layout) = (program.states.len(), program.layout);
+        for load in program.pair_loads {
+            let g = globals(program, &mut Random::new(13));
+            let law = |[gap, a, b]: [f64; 3], g: &[f64]| {
+                let mut out = [[0.0; 2]; 4];
+                (load.law)(gap, [a, b], [1.0, 0.3], g, &mut out);
+                out
+            };
+            for gap in [-0.2, 0.05, 0.2, 0.9] {
+                let at = [gap, 0.6, -0.8];
+                for along in 0..3 {
+                    let moved = derivative(1e-3 * gap, |h| {
+                        let mut moved = at;
+                        moved[along] += h;
+                        law(moved, &g)[0].to_vec()
+                    });
+                    assert_agree(load.name, &law(at, &g)[1 + along], &moved, TOLERANCE);
+                }
+                let Some(tangent) = &load.global_tangent else { continue };
+                let (alpha, mut columns) = (3.0, vec![[0.0; 2]; tangent.slots.len()]);
+                (tangent.law)(gap, [0.6, -0.8], [1.0, 0.3], &g, alpha, &mut columns);
+                for (slot, exact) in tangent.slots.iter().zip(columns) {
+                    let [value, rate] = match slot.checked_sub(states) {
+                        None => [layout.states[0], layout.state_rates[0]].map(|first| first + slot),
+                        Some(k) => [layout.functionals[0], layout.functional_rates[0]].map(|first| first + k),
+                    };
+                    let moved = derivative(1e-3, |h| {
+                        let mut moved = g.clone();
+                        moved[value] += h;
+                        moved[rate] += alpha * h;
+                        law(at, &moved)[0].to_vec()
+                    });
+                    assert_agree(load.name, &exact, &moved, TOLERANCE);
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn energies_have_symmetric_tangents_and_a_stress_without_energy_has_not() {
     for program in programs() {
         let energies = program.integrals.iter().filter(|i| i.name.contains("energy"));
@@ -289,7 +331,7 @@ fn energies_have_symmetric_tangents_and_a_stress_without_energy_has_not() {
 }
 
 #[test]
-fn only_a_stress_without_energy_and_coupled_fields_make_the_matrix_unsymmetric() {
+fn only_a_stress_without_energy_coupled_fields_and_loads_on_pairs_make_the_matrix_unsymmetric() {
     for program in programs() {
         let mut values = ansatz::settings::resolve(program, &[]).expect("defaults are valid");
         if let Some(coarse) = program.parameters.iter().position(|p| p.name == "coarse") {
@@ -298,7 +340,8 @@ fn only_a_stress_without_energy_and_coupled_fields_make_the_matrix_unsymmetric()
         let simulation = ansatz::Simulation::new(program, &values).expect("the defaults give a mesh");
         let symmetric = simulation.system().is_symmetric();
         let flows = program.fields.iter().any(|field| field.name == "v");
-        let unsymmetric = flows || ["dry_printed", "coupled", "whisker"].contains(&program.name);
+        let pressed = !program.pair_loads.is_empty();
+        let unsymmetric = flows || pressed || ["dry_printed", "coupled", "whisker"].contains(&program.name);
         assert_eq!(symmetric, !unsymmetric, "{}", program.name);
     }
 }

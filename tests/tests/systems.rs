@@ -1,23 +1,12 @@
 //! The tangent of whole discretised models is the derivative of their residual: integrals, contact, states and functionals together.
 
 use ansatz::generated::{ObservableKind, Program};
-use ansatz::mesh::Mesh;
 use ansatz::system::{StageProblem, System};
 use ansatz_tests::differences::{assert_agree, derivative};
-use ansatz_tests::models::{channel, coupled};
+use ansatz_tests::models::{channel, coupled, film, plates};
 use ansatz_tests::notes::Notes;
 use ansatz_tests::sample::Random;
-
-/// A model on its own mesh, some parameters set.
-fn system(program: &'static Program, set: &[(&str, &str)]) -> System {
-    let set: Vec<_> = set.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
-    let values = ansatz::settings::resolve(program, &set).expect("valid parameters");
-    let mut g = vec![0.0; program.layout.length];
-    g[program.layout.parameters[0]..program.layout.parameters[1]].copy_from_slice(&values);
-    let geometry = (program.geometry)(&g).expect("a geometry");
-    let mesh = Mesh::generate(&geometry, &(program.sizing)(&g)).expect("a mesh");
-    System::new(program, &values, mesh).expect("a system")
-}
+use ansatz_tests::system;
 
 /// Asserts that the tangent times a random direction is the change of the residual along it, at the start displaced by `shift` (by the reference
 /// position) and a little at random. The step is 1e-4 of the displacements; kinks of contact and states are further away than that.
@@ -35,7 +24,7 @@ fn tangent_is_exact(program: &'static Program, set: &[(&str, &str)], shift: impl
             }
         }
     }
-    assert!(program.pairs.is_empty() || smallest_gap(&mut system, &y) < -0.01, "contact is closed");
+    assert!(program.pair_integrals.is_empty() || smallest_gap(&mut system, &y) < -0.01, "contact is closed");
     let mut probe = system.probe(&problem, &y).expect("the states can be solved for");
     let free: Vec<bool> =
         (0..y.len()).map(|i| i < base.len() - scalars(program) && probe.is_free(i)).collect();
@@ -99,6 +88,13 @@ fn of_incompressible_flow() {
 fn with_contact_that_is_closed() {
     let down = |x: [f64; 2]| [0.0, if x[1] > 0.0 { -0.1 } else { 0.0 }];
     tangent_is_exact(&ansatz_examples::indentation::PROGRAM, &[("coarse", "4")], down);
+}
+
+#[test]
+fn with_loads_on_the_surfaces_of_a_pair() {
+    let bent = |x: [f64; 2]| [0.03 * x[0] * x[1], 0.02 * x[0] * x[0] - 0.04 * x[1]];
+    tangent_is_exact(&film::PROGRAM, &[("q", "0.6"), ("tilt", "0.7")], bent);
+    tangent_is_exact(&plates::PROGRAM, &[("k", "0.5")], bent);
 }
 
 #[test]

@@ -116,7 +116,7 @@ pub(super) fn ingredient(e: &Expr) -> Option<Ingredient> {
         | ExprKind::Normal(_)
         | ExprKind::Builtin(Builtin::Along | Builtin::Hoop, _) => Ingredient::Coordinate,
         ExprKind::MatchRegion(..) => Ingredient::Region,
-        ExprKind::Gap(_) => Ingredient::Gap,
+        ExprKind::Gap(_) | ExprKind::PairNormal(_) => Ingredient::Gap,
         ExprKind::Reduce(..) | ExprKind::Force(..) | ExprKind::AtPoint(..) => Ingredient::Functional,
         ExprKind::Measure(_) => Ingredient::Measure,
         ExprKind::ReduceRun(..) | ExprKind::AtTime(..) | ExprKind::AtEvent(..) | ExprKind::OutcomeIs(_) => {

@@ -1,6 +1,6 @@
 //! Where things live: cells are in one region, edges bound one or two, or none where only a field lives on their path.
 
-use crate::model::{Domain, Field, Model, PairId, PathId, Piece, RegionId};
+use crate::model::{Domain, Field, Model, PathId, Piece, RegionId, Sides};
 
 impl Model {
     /// The first piece of a domain that is none of these regions, nor bounds one.
@@ -21,14 +21,15 @@ impl Model {
 
     /// A contact piece as its surfaces, a path as its segments where only those bound regions.
     fn surfaces(&self, piece: Piece) -> Vec<Piece> {
-        let pair = |id: PairId| &self.pairs[id.0];
         match piece {
-            Piece::First(id) => {
-                pair(id).first.pieces.iter().flat_map(|piece| self.surfaces(*piece)).collect()
-            }
-            Piece::Pair(id) => {
-                let both = pair(id).first.pieces.iter().chain(&pair(id).second.pieces);
-                both.flat_map(|piece| self.surfaces(*piece)).collect()
+            Piece::Pair(id, sides) => {
+                let pair = &self.pairs[id.0];
+                let meant: &[&Domain] = match sides {
+                    Sides::First => &[&pair.first],
+                    Sides::Second => &[&pair.second],
+                    Sides::Both => &[&pair.first, &pair.second],
+                };
+                meant.iter().flat_map(|side| &side.pieces).flat_map(|piece| self.surfaces(*piece)).collect()
             }
             Piece::Path(id) => self.segments(id),
             other => vec![other],

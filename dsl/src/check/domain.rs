@@ -3,7 +3,7 @@
 use super::pair::is_pair;
 use super::{Checked, Checker, Env, Meaning, Reported};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::model::{Domain, Pair, PathId, Piece};
+use crate::model::{Domain, Pair, PathId, Piece, Sides};
 use crate::resolve::scope::{Symbol, Word};
 use crate::source::Span;
 use crate::syntax::ast::{self, BinaryOp, ExprKind as Syntax};
@@ -18,7 +18,7 @@ pub(crate) enum Kind {
     Edges,
     /// First or last points of paths.
     Ends,
-    /// A contact pair or its first side.
+    /// A contact pair or one side of it.
     Contact,
 }
 
@@ -29,7 +29,7 @@ impl Kind {
             Piece::Region(_) => Self::Cells,
             Piece::Path(_) | Piece::Segment(..) | Piece::Axis => Self::Edges,
             Piece::Start(_) | Piece::End(_) => Self::Ends,
-            Piece::First(_) | Piece::Pair(_) => Self::Contact,
+            Piece::Pair(..) => Self::Contact,
         }
     }
 
@@ -50,6 +50,15 @@ impl Kind {
             Self::Contact => "this is a contact pair",
         }
     }
+}
+
+/// A piece of a domain where it is named.
+#[derive(Clone, Copy, Debug)]
+struct Named {
+    piece: Piece,
+    /// Inside `current(..)`.
+    current: bool,
+    span: Span,
 }
 
 /// The kind of a domain, which has at least one piece.
@@ -78,37 +87,55 @@ impl Checker<'_> {
     pub(super) fn places(&mut self, e: &ast::Expr, env: &Env) -> Checked<Domain> {
         let mut pieces = Vec::new();
         self.pieces(e, env, &mut pieces)?;
-        let first = pieces.first().copied();
-        for (piece, span) in &pieces {
-            if let Some((one, place)) = first
-                && Kind::of(one) != Kind::of(*piece)
-            {
-                return Err(self.report(
-                    Diagnostic::error(Code::MixedDomain, e.span, "these make no common domain")
-                        .label(place, Kind::of(one).words())
-                        .label(*span, Kind::of(*piece).words())
-                        .help("write one statement for each"),
-                ));
-            }
+        self.one_kind(&pieces, e.span)?;
+        let domain = joined(pieces, e.span);
+        if domain.current && kind(&domain) != Kind::Contact {
+            let what = "integrals over the current configuration of regions and paths are not supported";
+            return Err(self.report(
+                Diagnostic::error(Code::Unsupported, e.span, what)
+                    .help("without `current(..)` the reference configuration is meant"),
+            ));
         }
-        Ok(joined(pieces, e.span))
+        Ok(domain)
     }
 
     /// The regions and paths on which a field lives.
     pub(super) fn carrier(&mut self, e: &ast::Expr) -> Checked<Domain> {
         let mut pieces = Vec::new();
         self.pieces(e, &Env::default(), &mut pieces)?;
-        let carries = |piece: &Piece| matches!(Kind::of(*piece), Kind::Cells | Kind::Edges);
-        match pieces.iter().find(|(piece, _)| !carries(piece)) {
+        let carries =
+            |named: &&Named| matches!(Kind::of(named.piece), Kind::Cells | Kind::Edges) && !named.current;
+        match pieces.iter().find(|named| !carries(named)) {
             None => Ok(joined(pieces, e.span)),
-            Some((piece, span)) => Err(self.report(
+            Some(Named { piece, span, .. }) => Err(self.report(
                 Diagnostic::error(Code::NotOnDomain, *span, "a field lives on regions and paths")
                     .here(Kind::of(*piece).words()),
             )),
         }
     }
 
-    fn pieces(&mut self, e: &ast::Expr, env: &Env, into: &mut Vec<(Piece, Span)>) -> Checked<()> {
+    /// Refuses pieces of different kinds and configurations.
+    fn one_kind(&mut self, pieces: &[Named], span: Span) -> Checked<()> {
+        let Some(first) = pieces.first() else { return Ok(()) };
+        let words = |named: &Named, other: &Named| match (named.current, other.current) {
+            (true, false) => "this is measured as it has moved",
+            (false, true) => "this is measured in the reference configuration",
+            _ => Kind::of(named.piece).words(),
+        };
+        let same =
+            |other: &&Named| Kind::of(first.piece) == Kind::of(other.piece) && first.current == other.current;
+        match pieces.iter().find(|other| !same(other)) {
+            None => Ok(()),
+            Some(other) => Err(self.report(
+                Diagnostic::error(Code::MixedDomain, span, "these make no common domain")
+                    .label(first.span, words(first, other))
+                    .label(other.span, words(other, first))
+                    .help("write one statement for each"),
+            )),
+        }
+    }
+
+    fn pieces(&mut self, e: &ast::Expr, env: &Env, into: &mut Vec<Named>) -> Checked<()> {
         match &e.kind {
             Syntax::Binary { op: BinaryOp::Add, left, right, .. } => {
                 let (a, b) = (self.pieces(left, env, into), self.pieces(right, env, into));
@@ -117,22 +144,20 @@ impl Checker<'_> {
             Syntax::Name(name) => self.named_pieces(name, e.span, env, into),
             Syntax::Member { object, member } => {
                 if let Some(pair) = self.pair_named(object, env)? {
-                    into.push((self.side(pair, member)?, e.span));
+                    let piece = self.side(pair, member)?;
+                    into.push(Named { piece, current: false, span: e.span });
                     return Ok(());
                 }
                 let path = self.path_named(object, env)?;
                 self.labelled(path, member, e.span, into)
             }
             Syntax::Call { callee, args } => match (callee.as_name(), args.as_slice()) {
-                (Some(name), [arg]) if name.text == "reference" => self.pieces(&arg.value, env, into),
-                (Some(name), [_]) if name.text == "current" => Err(self.report(
-                    Diagnostic::error(
-                        Code::Unsupported,
-                        e.span,
-                        "integrals over the current configuration are not supported",
-                    )
-                    .help("without `current(..)` the reference configuration is meant"),
-                )),
+                (Some(name), [arg]) if matches!(name.text.as_str(), "current" | "reference") => {
+                    let before = into.len();
+                    self.pieces(&arg.value, env, into)?;
+                    into[before..].iter_mut().for_each(|named| named.current = name.text == "current");
+                    Ok(())
+                }
                 _ => Err(self.no_domain_here(e.span)),
             },
             _ => Err(self.no_domain_here(e.span)),
@@ -146,13 +171,7 @@ impl Checker<'_> {
         )
     }
 
-    fn named_pieces(
-        &mut self,
-        name: &str,
-        span: Span,
-        env: &Env,
-        into: &mut Vec<(Piece, Span)>,
-    ) -> Checked<()> {
+    fn named_pieces(&mut self, name: &str, span: Span, env: &Env, into: &mut Vec<Named>) -> Checked<()> {
         let symbol =
             if env.locals.iter().any(|(known, _)| known == name) { None } else { self.symbol(name, env) };
         let piece = match symbol {
@@ -162,10 +181,11 @@ impl Checker<'_> {
             Some(Symbol::Broken) => return Err(Reported),
             Some(Symbol::Let(at)) => match self.meaning(at, span)? {
                 Meaning::Domain(domain) => {
-                    into.extend(domain.pieces.iter().map(|piece| (*piece, span)));
+                    let current = domain.current;
+                    into.extend(domain.pieces.iter().map(|&piece| Named { piece, current, span }));
                     return Ok(());
                 }
-                Meaning::Pair(pair) => Piece::Pair(pair),
+                Meaning::Pair(pair) => Piece::Pair(pair, Sides::Both),
                 Meaning::Value(_) => return Err(self.wrong_domain(name, "a value", span)),
             },
             Some(other) => return Err(self.wrong_domain(name, other.words(), span)),
@@ -174,7 +194,7 @@ impl Checker<'_> {
             }
             None => return Err(self.unknown_domain(name, span)),
         };
-        into.push((piece, span));
+        into.push(Named { piece, current: false, span });
         Ok(())
     }
 
@@ -223,12 +243,12 @@ impl Checker<'_> {
         path: PathId,
         label: &ast::Ident,
         span: Span,
-        into: &mut Vec<(Piece, Span)>,
+        into: &mut Vec<Named>,
     ) -> Checked<()> {
         let labels: Vec<Option<String>> = self.path_labels(path);
         let before = into.len();
         let found = labels.iter().enumerate().filter(|(_, known)| known.as_deref() == Some(&label.text));
-        into.extend(found.map(|(at, _)| (Piece::Segment(path, at), span)));
+        into.extend(found.map(|(at, _)| Named { piece: Piece::Segment(path, at), current: false, span }));
         if into.len() > before {
             return Ok(());
         }
@@ -238,7 +258,7 @@ impl Checker<'_> {
             _ => None,
         };
         if let Some(end) = end {
-            into.push((end, span));
+            into.push(Named { piece: end, current: false, span });
             return Ok(());
         }
         let known: Vec<&str> = labels.iter().flatten().map(String::as_str).collect();
@@ -258,7 +278,10 @@ impl Checker<'_> {
             Syntax::Member { object, member } => match &object.kind {
                 Syntax::Name(name) => match self.symbol(name, env) {
                     Some(Symbol::Path(_)) => true,
-                    Some(Symbol::Let(at)) => member.text == "first" && is_pair(&self.lets[at].ast.value),
+                    Some(Symbol::Let(at)) => {
+                        matches!(member.text.as_str(), "first" | "second")
+                            && is_pair(&self.lets[at].ast.value)
+                    }
                     _ => false,
                 },
                 _ => false,
@@ -289,13 +312,14 @@ impl Checker<'_> {
 }
 
 /// A domain of these pieces, each once, in ascending order; the labels of a path that is there as a whole say nothing more.
-fn joined(pieces: Vec<(Piece, Span)>, span: Span) -> Domain {
-    let mut pieces: Vec<Piece> = pieces.into_iter().map(|(piece, _)| piece).collect();
+fn joined(pieces: Vec<Named>, span: Span) -> Domain {
+    let current = pieces.first().is_some_and(|first| first.current);
+    let mut pieces: Vec<Piece> = pieces.into_iter().map(|named| named.piece).collect();
     let whole = pieces.clone();
     pieces.retain(|piece| !matches!(piece, Piece::Segment(path, _) if whole.contains(&Piece::Path(*path))));
     pieces.sort_unstable();
     pieces.dedup();
-    Domain { pieces, span }
+    Domain { pieces, current, span }
 }
 
 /// A piece by its names.
@@ -314,7 +338,13 @@ pub(crate) fn piece_words(geometry: &crate::model::Geometry, pairs: &[Pair], pie
         Piece::Axis => "`axis`".into(),
         Piece::Start(id) => format!("`{}.start`", geometry.paths[id.0].name),
         Piece::End(id) => format!("`{}.end`", geometry.paths[id.0].name),
-        Piece::First(id) => format!("`{}.first`", pairs[id.0].name),
-        Piece::Pair(id) => format!("`{}`", pairs[id.0].name),
+        Piece::Pair(id, sides) => {
+            let name = &pairs[id.0].name;
+            match sides {
+                Sides::First => format!("`{name}.first`"),
+                Sides::Second => format!("`{name}.second`"),
+                Sides::Both => format!("`{name}`"),
+            }
+        }
     }
 }

@@ -1,13 +1,14 @@
-//! Contact pairs: `let touch = pair(a, b, search: d);`, its sides and its gap.
+//! Contact pairs: `let touch = pair(a, b, search: d);`, its sides, its gap and its normals.
 
 use super::domain::{Kind, kind};
 use super::shape::settle;
 use super::{Checked, Checker, Env, Meaning, Reported};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::model::{Domain, Expr, ExprKind, Pair, PairId, Piece, Type};
+use crate::model::{Domain, Expr, ExprKind, Pair, PairId, Piece, Shape, Sides, Type};
 use crate::resolve::scope::Symbol;
 use crate::source::Span;
 use crate::syntax::ast::{self, ExprKind as Syntax};
+use ansatz_units::Dimension;
 
 impl Checker<'_> {
     /// The pair that a name stands for, if it does.
@@ -27,20 +28,13 @@ impl Checker<'_> {
 
     pub(super) fn side(&mut self, pair: PairId, side: &ast::Ident) -> Checked<Piece> {
         match side.text.as_str() {
-            "first" => Ok(Piece::First(pair)),
-            "second" => Err(self.report(
-                Diagnostic::error(
-                    Code::Unsupported,
-                    side.span,
-                    "integrals over the second side are not supported",
-                )
-                .help("name the surfaces in the other order, or integrate `on` the pair for both sides"),
-            )),
+            "first" => Ok(Piece::Pair(pair, Sides::First)),
+            "second" => Ok(Piece::Pair(pair, Sides::Second)),
             _ => {
                 let message = format!("a pair has no side `{}`", side.text);
                 Err(self.report(
                     Diagnostic::error(Code::UnknownMember, side.span, message)
-                        .help_did_you_mean(&side.text, ["first"]),
+                        .help_did_you_mean(&side.text, ["first", "second"]),
                 ))
             }
         }
@@ -50,7 +44,11 @@ impl Checker<'_> {
     pub(super) fn pair_member(&mut self, pair: PairId, member: &ast::Ident, span: Span) -> Checked<Expr> {
         match member.text.as_str() {
             "gap" => Ok(Expr { kind: ExprKind::Gap(pair), ty: Type::LENGTH, span }),
-            "normal" | "other" => {
+            "normal" => {
+                let ty = Type::Value(Shape::Vector, Dimension::NUMBER);
+                Ok(Expr { kind: ExprKind::PairNormal(pair), ty, span })
+            }
+            "other" => {
                 let message = format!("`.{}` of a pair is not supported", member.text);
                 Err(self.report(Diagnostic::error(Code::Unsupported, member.span, message)))
             }
@@ -61,8 +59,9 @@ impl Checker<'_> {
             _ => {
                 let message = format!("a pair has no member `{}`", member.text);
                 let diagnostic = Diagnostic::error(Code::UnknownMember, member.span, message)
-                    .help_did_you_mean(&member.text, ["gap", "first"]);
-                Err(self.report(diagnostic.help("it has `.gap` and the side `.first`")))
+                    .help_did_you_mean(&member.text, ["gap", "normal", "first", "second"]);
+                let help = "it has `.gap`, `.normal` and the sides `.first` and `.second`";
+                Err(self.report(diagnostic.help(help)))
             }
         }
     }

@@ -144,7 +144,8 @@ impl Checker<'_> {
             .label(quantity.span, format!("this is {}", self.words(&quantity.ty)));
         if let Some(domain) = domain {
             diagnostic = diagnostic.label(domain.span, measured_words(domain));
-            if f == want * domain::kind(domain).measure()
+            if domain::kind(domain) != domain::Kind::Contact
+                && f == want * domain::kind(domain).measure()
                 && let Some(help) = self.spread(force, quantity, domain)
             {
                 diagnostic = diagnostic.help(help);
@@ -181,6 +182,11 @@ impl Checker<'_> {
         let (field, component) = self.held_field(&quantity)?;
         let held = self.expect(held?, &quantity.ty, "the held value")?;
         match domain? {
+            Some(domain) if domain::kind(&domain) == domain::Kind::Contact => Err(self.report(
+                Diagnostic::error(Code::Misplaced, domain.span, "a field is held on paths and regions")
+                    .here(domain::Kind::Contact.words())
+                    .help("name the surfaces of the pair"),
+            )),
             Some(domain) => Ok(StatementKind::Hold(field, component, held, domain)),
             None => Err(self.report(
                 Diagnostic::error(Code::MissingArgument, span, "a field is held on a domain")

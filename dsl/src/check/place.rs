@@ -310,6 +310,7 @@ impl<'m> Placer<'m, '_> {
             ExprKind::Normal(_) => "a normal".into(),
             ExprKind::Builtin(..) => "a derivative in space".into(),
             ExprKind::Gap(id) => format!("`{}.gap`", model.pairs[id.0].name),
+            ExprKind::PairNormal(id) => format!("`{}.normal`", model.pairs[id.0].name),
             ExprKind::Time => "the time `t`".into(),
             ExprKind::MatchRegion(..) => "a choice by region".into(),
             ExprKind::Reduce(..) | ExprKind::AtPoint(..) => "a value of the solution".into(),
@@ -335,14 +336,11 @@ impl<'m> Placer<'m, '_> {
                 let message = "a derivative along a path exists on paths only".into();
                 self.missing(via.unwrap_or(e.span), e.span, domain, message);
             }
-            ExprKind::Gap(id) => {
-                let here = domain
-                    .pieces
-                    .iter()
-                    .all(|piece| matches!(piece, Piece::First(p) | Piece::Pair(p) if p == id));
+            ExprKind::Gap(id) | ExprKind::PairNormal(id) => {
+                let here = domain.pieces.iter().all(|piece| matches!(piece, Piece::Pair(p, _) if p == id));
                 if !here {
-                    let name = &self.model.pairs[id.0].name;
-                    let message = format!("`{name}.gap` exists on `{name}` and `{name}.first` only");
+                    let (name, what) = (&self.model.pairs[id.0].name, self.words(e));
+                    let message = format!("{what} exists on the surfaces of `{name}` only");
                     self.missing(via.unwrap_or(e.span), e.span, domain, message);
                 }
             }

@@ -182,7 +182,8 @@ impl Model {
     }
 
     fn domain(&self, domain: &Domain) -> String {
-        domain.pieces.iter().map(|piece| self.piece(*piece)).collect::<Vec<_>>().join(" + ")
+        let pieces = domain.pieces.iter().map(|piece| self.piece(*piece)).collect::<Vec<_>>().join(" + ");
+        if domain.current { format!("current({pieces})") } else { pieces }
     }
 
     fn piece(&self, piece: Piece) -> String {

@@ -92,6 +92,13 @@ impl Checker<'_> {
             return Err(self.no_measure(domain.span));
         }
         let of = kind(&domain);
+        if of == Kind::Contact {
+            let message = "a contact pair has no measure of its own";
+            return Err(self.report(Diagnostic::error(Code::NotOnDomain, span, message).help(format!(
+                "the area that faces the other surface is `integral(1 on {})`",
+                self.sources.slice(e.span)
+            ))));
+        }
         let fits = match name.text.as_str() {
             "area" => of != Kind::Cells,
             "volume" => of == Kind::Cells,

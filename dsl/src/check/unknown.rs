@@ -67,7 +67,7 @@ impl Checker<'_> {
             shape,
             dimension,
             space: space.unwrap_or(Space::P2),
-            domain: domain.unwrap_or(Domain { pieces: Vec::new(), span: ast.domain.span }),
+            domain: domain.unwrap_or(Domain { pieces: Vec::new(), current: false, span: ast.domain.span }),
             start: start.unwrap_or(Start::Solved),
             span: ast.name.span,
         });

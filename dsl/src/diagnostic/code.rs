@@ -94,6 +94,7 @@ codes! {
 
     Failed = "T401", "an expectation does not hold";
     Discontinuous = "T402", "the pieces of a `match` do not meet";
+    JumpAtSearch = "T403", "a force between surfaces does not vanish at the search distance";
 
     Unsupported = "X901", "the construct is valid but not supported";
     Internal = "X902", "the compiler met a state that it should never meet";

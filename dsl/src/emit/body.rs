@@ -28,11 +28,12 @@ pub struct Body {
     pub reads_globals: bool,
 }
 
-/// Prints roots as a function body over `g`, and `x`, `inputs`, `gap`, `alpha`, `switches` where the symbols ask for them.
+/// Prints roots as a function body over `g`, and `x`, `inputs`, `gap`, `normal`, `alpha`, `switches` where the symbols ask for them.
 pub fn body(lowering: &mut Lowering<'_>, slots: &Slots, sources: Sources<'_>, roots: &[Id]) -> Body {
     let roots = lower_powers(&mut lowering.pool, roots);
     let schedule = Schedule::new(&lowering.pool, &roots, &|_| 0);
-    let mut names = Names::new(&["g", "x", "inputs", "gap", "alpha", "switches", "out", "region", "record"]);
+    let mut names =
+        Names::new(&["g", "x", "inputs", "gap", "normal", "alpha", "switches", "out", "region", "record"]);
     let mut statements = Vec::new();
     let mut reads_globals = false;
     let mut kinds: Vec<SymbolKind> =
@@ -75,6 +76,10 @@ fn source(slots: &Slots, sources: Sources<'_>, kind: SymbolKind) -> Source {
         SymbolKind::Gap(_) => Source::InScope("gap"),
         SymbolKind::Alpha => Source::InScope("alpha"),
         SymbolKind::Switch(_) => Source::Switch,
+        SymbolKind::PairNormal(_, axis) => {
+            let axis = Literal::usize_unsuffixed(axis);
+            Source::Read(quote!(normal[#axis]))
+        }
         SymbolKind::Coordinate(axis) => {
             let axis = Literal::usize_unsuffixed(axis);
             Source::Read(quote!(x[#axis]))

@@ -1,9 +1,9 @@
-//! Fields, holds, contact pairs and functions at points.
+//! Fields, holds and functions at points.
 
-use super::body::{Sources, assignments, block, body, closure};
+use super::body::{Sources, assignments, block, body};
 use super::layout::Slots;
 use super::place;
-use crate::form::{Contact, Forms, Hold, PointForm};
+use crate::form::{Forms, Hold, PointForm};
 use crate::lower::{Lowering, Region, SymbolKind, region_names};
 use crate::model::{Model, Shape, Space};
 use crate::scalar::{Id, symbols_of};
@@ -64,7 +64,8 @@ fn at_point(lowering: &mut Lowering<'_>, slots: &Slots, roots: &[Id], writes: bo
     }
 }
 
-fn reads(lowering: &Lowering<'_>, roots: &[Id], wanted: impl Fn(SymbolKind) -> bool) -> bool {
+/// Whether the roots read a symbol of a kind.
+pub fn reads(lowering: &Lowering<'_>, roots: &[Id], wanted: impl Fn(SymbolKind) -> bool) -> bool {
     symbols_of(&lowering.pool, roots).into_iter().any(|symbol| wanted(lowering.symbols.kind(symbol)))
 }
 
@@ -87,52 +88,6 @@ fn one_hold(
     let (domain, place) = (domain(model, &hold.region), place(sources, hold.span));
     let value = at_point(lowering, slots, &[hold.value], false);
     quote!(Hold { field: #field, component: #component, domain: #domain, place: #place, value: #value })
-}
-
-/// The entries of `Program::pairs`.
-pub fn pairs(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
-    let (model, searches) = (forms.lowering.model, forms.settings.searches.clone());
-    let entries = model.pairs.iter().zip(&forms.displacements).zip(searches).map(|((pair, displacement), search)| {
-        let side = |domain| Region::of(domain).map(|region| region_names(model, &region)).unwrap_or_default();
-        let (name, first, second) = (&pair.name, side(&pair.first), side(&pair.second));
-        let (displacement, search) = (Literal::usize_unsuffixed(displacement.0), closure(&mut forms.lowering, slots, search));
-        quote!(Pair { name: #name, first: &[#(#first),*], second: &[#(#second),*], displacement: #displacement, search: #search })
-    });
-    let entries: Vec<TokenStream> = entries.collect();
-    quote!(&[#(#entries),*])
-}
-
-/// The entries of `Program::pair_integrals`.
-pub fn pair_integrals(forms: &mut Forms<'_>, slots: &Slots, sources: &SourceMap) -> TokenStream {
-    let contacts = forms.contacts.clone();
-    let entries: Vec<TokenStream> =
-        contacts.iter().map(|contact| pair_integral(&mut forms.lowering, slots, sources, contact)).collect();
-    quote!(&[#(#entries),*])
-}
-
-fn pair_integral(
-    lowering: &mut Lowering<'_>,
-    slots: &Slots,
-    sources: &SourceMap,
-    contact: &Contact,
-) -> TokenStream {
-    let (name, place, both) = (&contact.name, place(sources, contact.span), contact.both);
-    let [block, pair] = [contact.block.0, contact.pair.0].map(Literal::usize_unsuffixed);
-    let reads_gap = reads(lowering, &contact.law, |kind| matches!(kind, SymbolKind::Gap(_)));
-    let reads_point = reads(lowering, &contact.law, |kind| matches!(kind, SymbolKind::Coordinate(_)));
-    let body = body(lowering, slots, Sources::default(), &contact.law);
-    let gap = if reads_gap { quote!(gap) } else { quote!(_) };
-    let x = if reads_point { quote!(x) } else { quote!(_) };
-    let g = if body.reads_globals { quote!(g) } else { quote!(_) };
-    let (statements, results) = (&body.statements, &body.results);
-    quote!(PairIntegral {
-        name: #name,
-        place: #place,
-        block: #block,
-        pair: #pair,
-        both: #both,
-        law: |#gap, #x, #g| { #(#statements)* [#(#results),*] },
-    })
 }
 
 /// Both components of the normal that the roots read, which stand behind the other inputs.

@@ -11,6 +11,7 @@ mod integral;
 mod kernel;
 mod layout;
 mod outputs;
+mod pairs;
 mod parameters;
 mod program;
 mod states;

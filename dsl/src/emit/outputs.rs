@@ -5,12 +5,13 @@ use super::expression::number;
 use super::fields::{domain, point_function};
 use super::integral::Emitted;
 use super::layout::Slots;
+use super::pairs;
 use super::program::Plan;
 use crate::form::{Action, Event, Forms, Frames, FunctionalKind, PointForm, Table, Trigger, When};
 use crate::kernel::Kernels;
-use crate::lower::{Lowering, QuantityKind, Region, SymbolKind, region_names};
+use crate::lower::{Lowering, QuantityKind, Region, region_names};
 use crate::model::Reduction;
-use crate::scalar::{Id, symbols_of};
+use crate::scalar::Id;
 use crate::source::SourceMap;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -104,13 +105,18 @@ fn observable(
             let domain = domain(model, region);
             quote!(ObservableKind::Point(#at, #domain, #function))
         }
-        QuantityKind::PairExtreme(reduction, pair, value) => {
-            let pair = Literal::usize_unsuffixed(pair.0);
-            let function = of_gap(lowering, slots, *value);
+        QuantityKind::PairExtreme(reduction, pair, sides, value) => {
+            let (pair, sides) = (Literal::usize_unsuffixed(pair.0), pairs::sides(*sides));
+            let function = pairs::value(lowering, slots, *value);
             match reduction {
-                Reduction::Min => quote!(ObservableKind::PairMin(#pair, #function)),
-                _ => quote!(ObservableKind::PairMax(#pair, #function)),
+                Reduction::Min => quote!(ObservableKind::PairMin(#pair, #sides, #function)),
+                _ => quote!(ObservableKind::PairMax(#pair, #sides, #function)),
             }
+        }
+        QuantityKind::PairIntegral(pair, sides, current, value) => {
+            let (pair, sides) = (Literal::usize_unsuffixed(pair.0), pairs::sides(*sides));
+            let function = pairs::value(lowering, slots, *value);
+            quote!(ObservableKind::PairIntegral { pair: #pair, sides: #sides, current: #current, function: #function })
         }
         QuantityKind::Force(block, pieces, field, component) => {
             let domain = domain(model, &Region::Edges(pieces.clone()));
@@ -128,18 +134,6 @@ fn values_at_points(
 ) -> TokenStream {
     let form = PointForm::of_values(lowering, region, values);
     point_function(lowering, slots, &form)
-}
-
-/// `|gap, g| value`.
-fn of_gap(lowering: &mut Lowering<'_>, slots: &Slots, value: Id) -> TokenStream {
-    let reads_gap = symbols_of(&lowering.pool, &[value])
-        .into_iter()
-        .any(|symbol| matches!(lowering.symbols.kind(symbol), SymbolKind::Gap(_)));
-    let body = super::body::body(lowering, slots, super::body::Sources::default(), &[value]);
-    let gap = if reads_gap { quote!(gap) } else { quote!(_) };
-    let g = if body.reads_globals { quote!(g) } else { quote!(_) };
-    let value = super::body::block(&body);
-    quote!(|#gap, #g| #value)
 }
 
 /// The entries of `Program::events`.

@@ -3,7 +3,7 @@
 use super::body::{Sources, body};
 use super::integral::Emitted;
 use super::layout::Slots;
-use super::{docs, fields, geometry, helpers, outputs, parameters, states, tests};
+use super::{docs, fields, geometry, helpers, outputs, pairs, parameters, states, tests};
 use crate::form::{Forms, FunctionalKind, Term};
 use crate::kernel::{Kernel, Kernels, kernels};
 use crate::lower::{QuantityKind, region_names};
@@ -119,8 +119,9 @@ fn program(forms: &mut Forms<'_>, plan: &Plan, sources: &SourceMap) -> TokenStre
     let measures = measures(forms);
     let (fields, states) = (fields::fields(forms, &slots), states::states(forms, &slots));
     let blocks = model.blocks.iter().map(|block| &block.name);
-    let (holds, pairs) = (fields::holds(forms, &slots, sources), fields::pairs(forms, &slots));
-    let pair_integrals = fields::pair_integrals(forms, &slots, sources);
+    let (holds, contact_pairs) = (fields::holds(forms, &slots, sources), pairs::pairs(forms, &slots));
+    let pair_integrals = pairs::energies(forms, &slots, sources);
+    let pair_loads = pairs::loads(forms, &slots, sources);
     let couplings = states::couplings(forms, &slots, sources);
     let system = states::system(forms, &slots, sources);
     let (events, tables) = (outputs::events(forms, &slots), outputs::tables(forms, &slots));
@@ -143,8 +144,9 @@ fn program(forms: &mut Forms<'_>, plan: &Plan, sources: &SourceMap) -> TokenStre
             blocks: &[#(#blocks),*],
             holds: #holds,
             integrals: &[#(#integrals),*],
-            pairs: #pairs,
+            pairs: #contact_pairs,
             pair_integrals: #pair_integrals,
+            pair_loads: #pair_loads,
             couplings: #couplings,
             state_system: #system,
             observables: #observables,

@@ -2,7 +2,7 @@
 //! with fluxes and tangents, equations of states, functionals, observables, outputs, all in point or global symbols. Knows no element.
 //!
 //! - `vary`: the rule of variation; every energy, load and weak form becomes a [`Term`].
-//! - `physics`: the statements of the blocks.
+//! - `physics`: the statements of the blocks; `pair`: those on contact pairs.
 //! - `states`: equations of states; `balance`: those that energies give.
 //! - `observe`: which scalars are rows of the system (functionals) and which are only looked at (observables).
 //! - `settings`: what depends on parameters alone.
@@ -14,6 +14,7 @@ mod event;
 mod expect;
 mod observe;
 mod output;
+mod pair;
 mod physics;
 pub mod print;
 pub mod settings;
@@ -22,7 +23,7 @@ mod vary;
 
 use crate::diagnostic::Diagnostic;
 use crate::lower::{Lowered, Lowering, Part, Region, SymbolKind};
-use crate::model::{BlockId, FieldId, Model, PairId};
+use crate::model::{BlockId, FieldId, Model};
 use crate::scalar::Id;
 use crate::source::Span;
 
@@ -30,6 +31,7 @@ pub use event::{Action, Event, Trigger};
 pub use expect::{Expectation, RunTest};
 pub use observe::{Functional, FunctionalKind};
 pub use output::{Column, FrameColumn, Frames, PointForm, PointInput, Table, When};
+pub use pair::{Contact, GapEnergy, PairLoad};
 pub use states::{Equation, StateSystem, size_of_kind};
 pub use vary::Term;
 
@@ -45,7 +47,9 @@ pub struct Forms<'m> {
     /// Prescribed components.
     pub holds: Vec<Hold>,
     /// Energies of gaps.
-    pub contacts: Vec<Contact>,
+    pub gap_energies: Vec<GapEnergy>,
+    /// Loads on contact pairs.
+    pub pair_loads: Vec<PairLoad>,
     /// Loads on functionals.
     pub couplings: Vec<Coupling>,
     /// Equations of the states.
@@ -77,20 +81,6 @@ pub struct Hold {
     pub component: usize,
     pub region: Region,
     pub value: Id,
-    pub span: Span,
-}
-
-/// An energy of the gap of a pair, per reference area.
-#[derive(Clone, Debug)]
-#[allow(missing_docs)]
-pub struct Contact {
-    pub name: String,
-    pub block: BlockId,
-    pub pair: PairId,
-    /// Integrated over both sides.
-    pub both: bool,
-    /// The energy and its first and second derivative by the gap.
-    pub law: [Id; 3],
     pub span: Span,
 }
 
@@ -131,13 +121,14 @@ pub fn build(model: &Model) -> Result<Forms<'_>, Vec<Diagnostic>> {
         Some(settings) if problems.is_empty() => settings,
         _ => return Err(problems),
     };
-    let physics::Physics { terms, holds, contacts, couplings, .. } = physics;
+    let physics::Physics { terms, holds, gap_energies, pair_loads, couplings, .. } = physics;
     Ok(Forms {
         lowering,
         settings,
         terms,
         holds,
-        contacts,
+        gap_energies,
+        pair_loads,
         couplings,
         states,
         functionals,

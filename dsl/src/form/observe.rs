@@ -36,6 +36,7 @@ impl<'m> Builder<'m> {
     pub(super) fn functionals(&mut self, physics: &Physics) -> Vec<Functional> {
         let mut roots: Vec<Id> = physics.differences.iter().map(|(difference, _)| *difference).collect();
         roots.extend(physics.couplings.iter().map(|coupling| coupling.coefficient));
+        roots.extend(physics.pair_loads.iter().flat_map(|load| load.flux));
         roots.extend(physics.terms.iter().flat_map(|term| term.flux.iter().copied().chain(term.value)));
         let mut rows = quantities_in(&self.lowering, &roots);
         rows.extend(physics.couplings.iter().map(|coupling| coupling.quantity));
@@ -142,6 +143,9 @@ fn functional(lowering: &mut Lowering<'_>, quantity: usize) -> Lowered<Functiona
         }
         QuantityKind::Side(..) => {
             return Err(unsupported(of.span, "an equation cannot read gradients or normals on paths"));
+        }
+        QuantityKind::PairIntegral(..) => {
+            return Err(unsupported(of.span, "an equation cannot read an integral over a contact pair"));
         }
         QuantityKind::Extreme(..) | QuantityKind::PairExtreme(..) | QuantityKind::Force(..) => {
             return Err(unsupported(of.span, "an equation cannot read an extreme value or a resultant"));

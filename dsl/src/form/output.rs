@@ -4,7 +4,7 @@ use super::Builder;
 use super::observe::observed;
 use crate::derive;
 use crate::lower::{FieldInput, Lowered, Lowering, Region, SymbolKind, unsupported};
-use crate::model::{Every, FieldId, Shape, Start, Type};
+use crate::model::{Every, FieldId, PairId, Shape, Start, Type};
 use crate::scalar::{Id, symbols_of};
 use ansatz_units::Dimension;
 
@@ -160,14 +160,8 @@ impl<'m> Builder<'m> {
 
     /// Displacement field of each pair.
     pub(super) fn displacements(&mut self) -> Vec<FieldId> {
-        let pairs = &self.lowering.model.pairs;
-        pairs
-            .iter()
-            .filter_map(|pair| {
-                let pieces: Vec<_> = pair.first.pieces.iter().chain(&pair.second.pieces).copied().collect();
-                self.attempt(|lowering| lowering.field_of_force(&pieces, pair.span))
-            })
-            .collect()
+        let pairs = 0..self.lowering.model.pairs.len();
+        pairs.filter_map(|pair| self.attempt(|lowering| lowering.displacement_of(PairId(pair)))).collect()
     }
 }
 

@@ -1,11 +1,12 @@
 //! The statements of the physics blocks.
 
 use super::balance::{Balances, state_slopes};
+use super::pair::{Contact, GapEnergy, PairLoad, gap_energy, pair_load};
 use super::vary::{Origin, Term, Variation, linearise};
-use super::{Builder, Contact, Coupling, Hold};
+use super::{Builder, Coupling, Hold};
 use crate::derive;
 use crate::lower::{Lowered, Lowering, Region, SymbolKind, Value, internal, is_gradient, unsupported};
-use crate::model::{BlockId, Domain, Expr, FieldId, Piece, Shape, Statement, StatementKind};
+use crate::model::{BlockId, Domain, Expr, FieldId, PairId, Piece, Shape, Sides, Statement, StatementKind};
 use crate::scalar::{Id, symbols_of};
 use crate::source::Span;
 
@@ -14,7 +15,8 @@ use crate::source::Span;
 pub(super) struct Physics {
     pub(super) terms: Vec<Term>,
     pub(super) holds: Vec<Hold>,
-    pub(super) contacts: Vec<Contact>,
+    pub(super) gap_energies: Vec<GapEnergy>,
+    pub(super) pair_loads: Vec<PairLoad>,
     pub(super) couplings: Vec<Coupling>,
     /// Left minus right side of each equation, then the balances of states without one.
     pub(super) differences: Vec<(Id, Span)>,
@@ -45,19 +47,28 @@ impl Physics {
     ) -> Lowered<()> {
         let span = statement.span;
         match &statement.kind {
-            StatementKind::Energy(density, Some(domain)) => match domain.pieces.as_slice() {
-                &[Piece::First(pair) | Piece::Pair(pair)] => {
-                    let both = matches!(domain.pieces[0], Piece::Pair(_));
-                    let law = gap_law(lowering, density, pair)?;
-                    let name = format!("{} energy", lowering.model.blocks[block.0].name);
-                    self.contacts.push(Contact { name, block, pair, both, law, span });
-                    Ok(())
+            StatementKind::Energy(density, Some(domain)) if let Some((pair, sides)) = surfaces(domain) => {
+                if domain.current {
+                    let what = "an energy of the gap is per reference area; write a load for a force per area as it has moved";
+                    return Err(unsupported(domain.span, what));
                 }
-                _ => self.integral(lowering, (block, "energy", span), domain, |lowering| {
+                let name = format!("{} energy", lowering.model.blocks[block.0].name);
+                let contact = Contact { name, block, pair, sides, span };
+                self.gap_energies.push(gap_energy(lowering, contact, density)?);
+                Ok(())
+            }
+            StatementKind::Load(of, with, Some(domain)) if let Some((pair, sides)) = surfaces(domain) => {
+                let name = format!("{} load", lowering.model.blocks[block.0].name);
+                let contact = Contact { name, block, pair, sides, span };
+                self.pair_loads.push(pair_load(lowering, contact, domain.current, (of, with))?);
+                Ok(())
+            }
+            StatementKind::Energy(density, Some(domain)) => {
+                self.integral(lowering, (block, "energy", span), domain, |lowering| {
                     let density = lowering.scalar_here(density)?;
                     Ok(Variation::of_density(lowering, density))
-                }),
-            },
+                })
+            }
             StatementKind::Energy(energy, None) => self.lumped_energy(lowering, block, energy, span),
             StatementKind::Residual(residual, domain) => {
                 self.integral(lowering, (block, "residual", span), domain, |lowering| {
@@ -92,7 +103,10 @@ impl Physics {
         vary: impl FnMut(&mut Lowering<'m>) -> Lowered<Variation>,
     ) -> Lowered<()> {
         let region = Region::of(domain).ok_or_else(|| {
-            unsupported(domain.span, "only an energy of the gap can stand on a contact pair")
+            unsupported(
+                domain.span,
+                "only energies of the gap and loads can stand on a contact pair, one pair at a time",
+            )
         })?;
         for (region, variation) in lowering.on_parts(&region, vary)? {
             if variation.is_zero() {
@@ -201,33 +215,17 @@ fn follows_fields(kind: SymbolKind) -> bool {
             | K::Quantity(_)
             | K::QuantityRate(_)
             | K::Gap(_)
+            | K::PairNormal(..)
             | K::Table(_)
     )
 }
 
-/// The energy of a gap with its derivatives.
-fn gap_law<'m>(
-    lowering: &mut Lowering<'m>,
-    density: &'m Expr,
-    pair: crate::model::PairId,
-) -> Lowered<[Id; 3]> {
-    let energy = lowering.scalar_on_pair(density, pair)?;
-    let gap = lowering.symbols.symbol(SymbolKind::Gap(pair));
-    for symbol in symbols_of(&lowering.pool, &[energy]) {
-        use SymbolKind as K;
-        if matches!(
-            lowering.symbols.kind(symbol),
-            K::State(_) | K::StateRate(_) | K::Quantity(_) | K::QuantityRate(_)
-        ) {
-            return Err(unsupported(
-                density.span,
-                "an energy of the gap cannot depend on states or functionals",
-            ));
-        }
+/// The pair and the sides of it that a domain names, if it does.
+fn surfaces(domain: &Domain) -> Option<(PairId, Sides)> {
+    match domain.pieces.as_slice() {
+        &[Piece::Pair(pair, sides)] => Some((pair, sides)),
+        _ => None,
     }
-    let force = derive::derivative(&mut lowering.pool, &[energy], gap)[0];
-    let stiffness = derive::derivative(&mut lowering.pool, &[force], gap)[0];
-    Ok([energy, force, stiffness])
 }
 
 /// Derivative of the roots by each quantity in them; time derivatives are varied like what they are derivatives of.

@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use super::{Forms, FunctionalKind, Term};
+use super::{Contact, Forms, FunctionalKind, Term};
 use crate::lower::{Lowering, SymbolKind, input_name, region_names, symbol_name};
+use crate::model::Sides;
 use crate::scalar::print::listing;
 use crate::scalar::schedule::Schedule;
 use crate::scalar::{Id, lower_powers};
@@ -18,11 +19,16 @@ pub fn forms(forms: &Forms<'_>, sources: &SourceMap) -> String {
         text += &heading(lowering, sources, term);
         text += &formulas(lowering, &term_roots(lowering, term));
     }
-    for contact in &forms.contacts {
-        let pair = &lowering.model.pairs[contact.pair.0].name;
-        let _ = writeln!(text, "{} on {pair}, {}", contact.name, sources.locate(contact.span));
+    for energy in &forms.gap_energies {
+        text += &contact_heading(lowering, sources, &energy.contact);
         let labels = ["energy", "force", "stiffness"].map(String::from);
-        text += &formulas(lowering, &labels.into_iter().zip(contact.law).collect::<Vec<_>>());
+        text += &formulas(lowering, &labels.into_iter().zip(energy.law).collect::<Vec<_>>());
+    }
+    for load in &forms.pair_loads {
+        text += &contact_heading(lowering, sources, &load.contact);
+        let names = &lowering.model.coordinates.names;
+        let flux = names.iter().zip(load.flux).map(|(name, flux)| (format!("flux[{name}]"), flux));
+        text += &formulas(lowering, &flux.collect::<Vec<_>>());
     }
     for coupling in &forms.couplings {
         let _ = writeln!(text, "coupling, {}", sources.locate(coupling.span));
@@ -46,6 +52,16 @@ pub fn forms(forms: &Forms<'_>, sources: &SourceMap) -> String {
         forms.observables.iter().map(|&q| lowering.quantities[q].name.as_str()).collect();
     let _ = writeln!(text, "observables: {}", observables.join(", "));
     text
+}
+
+fn contact_heading(lowering: &Lowering<'_>, sources: &SourceMap, contact: &Contact) -> String {
+    let pair = &lowering.model.pairs[contact.pair.0].name;
+    let side = match contact.sides {
+        Sides::First => ".first",
+        Sides::Second => ".second",
+        Sides::Both => "",
+    };
+    format!("{} on {pair}{side}, {}\n", contact.name, sources.locate(contact.span))
 }
 
 fn heading(lowering: &Lowering<'_>, sources: &SourceMap, term: &Term) -> String {

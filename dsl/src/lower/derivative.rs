@@ -28,7 +28,9 @@ impl<'m> Lowering<'m> {
                         "second time derivatives are not supported; declare the velocity as an unknown",
                     ));
                 }
-                SymbolKind::Gap(_) => return Err(unsupported(span, "the rate of a gap is not supported")),
+                SymbolKind::Gap(_) | SymbolKind::PairNormal(..) => {
+                    return Err(unsupported(span, "the rate of a gap or of its normal is not supported"));
+                }
                 _ => None,
             })
         })

@@ -5,7 +5,7 @@ use super::{
     unsupported,
 };
 use crate::model::{
-    Arm, Builtin, Expr, ExprKind, FieldId, FunctionId, LetId, LocalId, Piece, RegionId, Shape, Type,
+    Arm, Builtin, Expr, ExprKind, FieldId, FunctionId, LetId, LocalId, PairId, Piece, RegionId, Shape, Type,
 };
 use crate::scalar::{Id, Relation};
 use crate::source::Span;
@@ -87,6 +87,7 @@ impl<'m> Lowering<'m> {
             K::Reduce(..) | K::Measure(_) | K::Force(..) | K::AtPoint(..) => self.reduce(expr)?,
             K::Normal(domain) => self.normal(domain, span)?,
             K::Gap(pair) => self.gap(*pair, span)?,
+            K::PairNormal(pair) => self.pair_normal(*pair, span)?,
             K::ReduceRun(..) | K::AtTime(..) | K::AtEvent(..) => self.run_value(expr)?,
             K::Held(..) => return Err(unsupported(span, "`for` stands only in the condition of an event")),
         })
@@ -225,7 +226,7 @@ impl<'m> Lowering<'m> {
     }
 
     fn field(&mut self, field: FieldId, test: bool, span: Span) -> Lowered<Value> {
-        if !matches!(self.place, Place::Cells(_) | Place::Edges(_)) {
+        if matches!(self.place, Place::Global) {
             return Err(unsupported(
                 span,
                 "a field has no value here; take its mean, its integral or its value at a point",
@@ -425,11 +426,20 @@ impl<'m> Lowering<'m> {
         (0..regions.len()).filter(|&r| bounds(&regions[r])).map(RegionId).collect()
     }
 
-    fn gap(&mut self, pair: crate::model::PairId, span: Span) -> Lowered<Value> {
-        match self.place {
-            Place::Pair(here) if here == pair => Ok(Value::Scalar(self.input(SymbolKind::Gap(pair)))),
-            _ => Err(unsupported(span, "a gap has a value only on its own pair")),
-        }
+    fn gap(&mut self, pair: PairId, span: Span) -> Lowered<Value> {
+        self.on_own_pair(pair, span)?;
+        Ok(Value::Scalar(self.input(SymbolKind::Gap(pair))))
+    }
+
+    fn pair_normal(&mut self, pair: PairId, span: Span) -> Lowered<Value> {
+        self.on_own_pair(pair, span)?;
+        let components = [0, 1].map(|axis| self.input(SymbolKind::PairNormal(pair, axis)));
+        Ok(self.in_plane(components))
+    }
+
+    fn on_own_pair(&self, pair: PairId, span: Span) -> Lowered<()> {
+        let here = self.place == Place::Pair(pair);
+        here.then_some(()).ok_or_else(|| unsupported(span, "a gap has a value only on its own pair"))
     }
 }
 

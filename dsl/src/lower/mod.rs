@@ -150,6 +150,12 @@ impl<'m> Lowering<'m> {
         self.at(Place::Pair(pair), |lowering| lowering.scalar_expr(expr))
     }
 
+    /// Components of a value at the surface points of a pair, a literal 0 in the shape of its type.
+    pub fn components_on_pair(&mut self, expr: &'m Expr, pair: PairId) -> Lowered<Vec<Id>> {
+        let value = self.at(Place::Pair(pair), |lowering| lowering.here(expr))?;
+        Ok(value.components(&mut self.pool))
+    }
+
     /// Time derivative of a scalar.
     pub fn rate_of_scalar(&mut self, of: Id, span: Span) -> Lowered<Id> {
         let rate = self.rate(&Value::Scalar(of), span)?;

@@ -45,6 +45,7 @@ pub fn symbol_name(lowering: &Lowering<'_>, kind: SymbolKind) -> String {
         K::Test(input) => format!("test_{}", input_name(model, input)),
         K::Normal(_, axis) => format!("n_{}", model.coordinates.names[axis]),
         K::Gap(_) => String::from("gap"),
+        K::PairNormal(_, axis) => format!("n_{}", model.coordinates.names[axis]),
         K::Alpha => String::from("alpha"),
         K::Weight => String::from("weight"),
         K::Switch(number) => format!("switch_{number}"),
@@ -79,7 +80,7 @@ pub fn piece_name(model: &Model, piece: Piece) -> String {
         Piece::Axis => String::from("axis"),
         Piece::Start(path) => format!("{}.start", model.geometry.paths[path.0].name),
         Piece::End(path) => format!("{}.end", model.geometry.paths[path.0].name),
-        Piece::First(pair) | Piece::Pair(pair) => model.pairs[pair.0].name.clone(),
+        Piece::Pair(pair, _) => model.pairs[pair.0].name.clone(),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Scalars made from whole fields: means, integrals, extremes, values at a point, resultants. Equal ones are one.
 
-use crate::model::{BlockId, Domain, FieldId, PairId, Piece, Reduction, RegionId};
+use crate::model::{BlockId, Domain, FieldId, PairId, Piece, Reduction, RegionId, Sides};
 use crate::scalar::Id;
 use crate::source::Span;
 use ansatz_units::Dimension;
@@ -26,8 +26,10 @@ pub enum QuantityKind {
     Extreme(Reduction, Region, Vec<Id>),
     /// Value at a reference point, which may lie in any of the regions.
     Point([Id; 2], Region, Vec<Id>),
-    /// Smallest or largest function of the gap over a pair.
-    PairExtreme(Reduction, PairId, Id),
+    /// Smallest or largest value over surfaces of a pair.
+    PairExtreme(Reduction, PairId, Sides, Id),
+    /// Integral over the points of surfaces of a pair that the other one faces, per area as it has moved (`true`) or of the reference shape.
+    PairIntegral(PairId, Sides, bool, Id),
     /// In-plane component of the resultant that a block puts on edges.
     Force(BlockId, Vec<Piece>, FieldId, usize),
 }
@@ -39,7 +41,9 @@ impl QuantityKind {
             QuantityKind::Integral(parts) => parts.iter().map(|part| part.density).collect(),
             QuantityKind::Extreme(_, _, values) => values.clone(),
             QuantityKind::Point(at, _, values) => at.iter().chain(values).copied().collect(),
-            QuantityKind::Side(_, _, value) | QuantityKind::PairExtreme(_, _, value) => vec![*value],
+            QuantityKind::Side(_, _, value)
+            | QuantityKind::PairExtreme(_, _, _, value)
+            | QuantityKind::PairIntegral(_, _, _, value) => vec![*value],
             QuantityKind::Force(..) => Vec::new(),
         }
     }

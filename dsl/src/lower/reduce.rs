@@ -1,13 +1,15 @@
 //! Lowering of what takes whole fields or whole runs to one number.
 
 use super::{
-    Lowered, Lowering, Part, Place, Quantity, QuantityKind, Region, SymbolKind, Value, internal, unsupported,
+    Lowered, Lowering, Part, Quantity, QuantityKind, Region, SymbolKind, Value, internal, symbol_name,
+    unsupported,
 };
 use crate::check::walk::deep;
 use crate::model::{
-    Builtin, Domain, EventId, Expr, ExprKind, FieldId, PathId, Piece, Reduction, RegionId, Shape, Type,
+    Builtin, Domain, EventId, Expr, ExprKind, FieldId, PairId, PathId, Piece, Reduction, RegionId, Shape,
+    Sides, Type,
 };
-use crate::scalar::Id;
+use crate::scalar::{Id, symbols_of};
 use crate::source::Span;
 use ansatz_units::Dimension;
 use std::collections::BTreeSet;
@@ -43,13 +45,8 @@ impl<'m> Lowering<'m> {
         match &expr.kind {
             ExprKind::Measure(domain) => Ok(Value::Scalar(self.measure(domain)?)),
             ExprKind::Reduce(reduction, of, domain) => match domain.pieces.as_slice() {
-                &[Piece::First(pair) | Piece::Pair(pair)] => {
-                    let value = self.at(Place::Pair(pair), |lowering| lowering.scalar_expr(of))?;
-                    if matches!(reduction, Reduction::Mean | Reduction::Integral) {
-                        return Err(unsupported(expr.span, "only `min` and `max` reduce over a pair"));
-                    }
-                    let kind = QuantityKind::PairExtreme(*reduction, pair, value);
-                    Ok(Value::Scalar(self.quantity(kind, expr)))
+                &[Piece::Pair(pair, sides)] => {
+                    self.reduce_pair(*reduction, of, (pair, sides, domain.current), expr)
                 }
                 _ => self.reduce_region(*reduction, of, domain, expr),
             },
@@ -85,6 +82,53 @@ impl<'m> Lowering<'m> {
             _ => return Err(internal(expr.span, "no value of a run")),
         };
         Ok(Value::Scalar(self.run_symbol(value)))
+    }
+
+    /// Lowers a reduction over the points of surfaces of a pair.
+    fn reduce_pair(
+        &mut self,
+        reduction: Reduction,
+        of: &'m Expr,
+        (pair, sides, current): (PairId, Sides, bool),
+        expr: &'m Expr,
+    ) -> Lowered<Value> {
+        let components = self.components_on_pair(of, pair)?;
+        self.without_fields(&components, of.span)?;
+        let integral = |lowering: &mut Self, value: Id| {
+            lowering.quantity(QuantityKind::PairIntegral(pair, sides, current, value), expr)
+        };
+        let reduced: Vec<Id> = match reduction {
+            Reduction::Min | Reduction::Max => components
+                .into_iter()
+                .map(|value| self.quantity(QuantityKind::PairExtreme(reduction, pair, sides, value), expr))
+                .collect(),
+            Reduction::Integral => components.into_iter().map(|value| integral(self, value)).collect(),
+            Reduction::Mean => {
+                let one = self.pool.one();
+                let area = integral(self, one);
+                let mean = |value| {
+                    let sum = integral(self, value);
+                    self.pool.div(sum, area)
+                };
+                components.into_iter().map(mean).collect()
+            }
+        };
+        Ok(Value::from_components(&reduced))
+    }
+
+    /// Refuses fields at the points of a pair.
+    pub(crate) fn without_fields(&self, roots: &[Id], span: Span) -> Lowered<()> {
+        let is_field = |symbol: &crate::scalar::Symbol| {
+            use SymbolKind as K;
+            matches!(self.symbols.kind(*symbol), K::Field(_) | K::FieldRate(_) | K::Frozen(_) | K::Test(_))
+        };
+        match symbols_of(&self.pool, roots).iter().find(|symbol| is_field(symbol)) {
+            None => Ok(()),
+            Some(&symbol) => {
+                let name = symbol_name(self, self.symbols.kind(symbol));
+                Err(unsupported(span, format!("`{name}` cannot be read at the points of a contact pair")))
+            }
+        }
     }
 
     fn reduce_region(
@@ -181,7 +225,7 @@ impl<'m> Lowering<'m> {
             return Ok(Region::Cells((0..model.geometry.regions.len()).map(RegionId).collect()));
         }
         let carries_all = |piece: &Piece| {
-            let domain = Domain { pieces: vec![*piece], span };
+            let domain = Domain { pieces: vec![*piece], current: false, span };
             fields.iter().all(|field| model.without(&model.fields[field.0], &domain).is_none())
         };
         let labelled = |(path, definition): (usize, &crate::model::Path)| {
@@ -232,9 +276,16 @@ impl<'m> Lowering<'m> {
         std::iter::once(self.naming.clone()).chain(numbered).find(|name| !taken(name)).unwrap_or_default()
     }
 
+    /// The field that moves both surfaces of a pair.
+    pub(crate) fn displacement_of(&self, pair: PairId) -> Lowered<FieldId> {
+        let pair = &self.model.pairs[pair.0];
+        let pieces: Vec<Piece> = pair.first.pieces.iter().chain(&pair.second.pieces).copied().collect();
+        self.field_of_force(&pieces, pair.span)
+    }
+
     /// The vector field whose unknowns carry forces on these edges: a displacement where there is one.
     pub(crate) fn field_of_force(&self, pieces: &[Piece], span: Span) -> Lowered<FieldId> {
-        let domain = Domain { pieces: pieces.to_vec(), span };
+        let domain = Domain { pieces: pieces.to_vec(), current: false, span };
         let lives = |field: &crate::model::Field| {
             field.shape == Shape::Vector && self.model.without(field, &domain).is_none()
         };

@@ -62,6 +62,8 @@ pub enum SymbolKind {
     Normal(usize, usize),
     /// Gap of a contact pair at a surface point.
     Gap(PairId),
+    /// In-plane component of the unit normal of the surface of a contact pair that the point is on.
+    PairNormal(PairId, usize),
     /// Factor d rate / d value of the time integrator.
     Alpha,
     /// Quadrature weight times the measure at the point, `2 pi r` included.

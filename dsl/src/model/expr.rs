@@ -248,6 +248,8 @@ pub enum ExprKind {
     Normal(Domain),
     /// `pair.gap`: signed distance, negative when penetrating.
     Gap(PairId),
+    /// `pair.normal`: unit normal of the surface that the point is on, out of its body, as it has moved.
+    PairNormal(PairId),
     /// `e@(r, z)`: value at a reference point.
     AtPoint(Box<Expr>, Box<Expr>),
     /// `e@(50 s)`.
@@ -277,6 +279,7 @@ impl Expr {
             | ExprKind::Force(..)
             | ExprKind::Normal(_)
             | ExprKind::Gap(_)
+            | ExprKind::PairNormal(_)
             | ExprKind::OutcomeIs(_) => Vec::new(),
             ExprKind::Tuple(items) => items.iter().collect(),
             ExprKind::Triple(items) => items.iter().collect(),
@@ -332,18 +335,27 @@ pub enum Piece {
     Start(PathId),
     /// The last point of a path.
     End(PathId),
-    /// First side of a pair.
-    First(PairId),
-    /// Both sides of a pair.
-    Pair(PairId),
+    /// Surfaces of a pair.
+    Pair(PairId, Sides),
 }
 
-/// Where something holds, is integrated or reduced: a set of pieces of one kind (cells, edges, ends of paths or contact pairs), reference
-/// configuration. The domain of a field may have both cells and edges.
+/// Which surfaces of a pair are meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[allow(missing_docs)]
+pub enum Sides {
+    First,
+    Second,
+    Both,
+}
+
+/// Where something holds, is integrated or reduced: a set of pieces of one kind (cells, edges, ends of paths or contact pairs). The
+/// domain of a field may have both cells and edges.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Domain {
     /// Pieces without repetition, in ascending order.
     pub pieces: Vec<Piece>,
+    /// `current(..)`: measured as it has moved, else in the reference configuration.
+    pub current: bool,
     /// Where it stands.
     pub span: Span,
 }

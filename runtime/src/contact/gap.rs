@@ -8,6 +8,8 @@
 //! - grad g = A^T n, since n is normal to t and a unit vector,
 //! - Hess g = (-h/m a a^T + a b^T + b a^T - g b b^T) / D.
 //!
+//! At an end of the curve, which does not move along it, n is the direction from there, and Hess g = a a^T / (m g) with any t normal to n.
+//!
 //! The Hessian is that of the condensed problem: the motion of the closest point along the curve and the turning of the
 //! normal are in it. D is positive at a minimum of the distance; it vanishes at the centre of curvature.
 
@@ -42,7 +44,7 @@ pub struct Gap {
 impl Gap {
     /// Gap of a slave point, the sum of `shape` times the positions of `slave` nodes, to its projection on `curve`.
     pub fn new(slave: [usize; 3], shape: [f64; 3], curve: &SmoothCurve, projection: &Projection) -> Self {
-        let Projection { location, gap, normal, curve: [_, tangent, curvature] } = *projection;
+        let Projection { location, gap, normal, curve: [_, tangent, curvature], end } = *projection;
         let (m, h) = (dot(tangent, tangent), dot(normal, curvature));
         let denominator = m - gap * h;
         let mut result = Self {
@@ -54,7 +56,10 @@ impl Gap {
             gradient: [[0.0; 2]; GAP_NODES],
             along: [[0.0; 2]; GAP_NODES],
             turning: [[0.0; 2]; GAP_NODES],
-            factors: [-h / (m * denominator), 1.0 / denominator, -gap / denominator],
+            factors: match end {
+                true => [1.0 / (m * gap), 0.0, 0.0],
+                false => [-h / (m * denominator), 1.0 / denominator, -gap / denominator],
+            },
         };
         for (node, weight) in slave.into_iter().zip(shape) {
             result.add(NodeWeight { node, weights: [[weight; 2], [0.0; 2], [0.0; 2]] }, 1.0, tangent);

@@ -17,7 +17,8 @@ mod shapes;
 
 pub use curve::{End, SmoothCurve, smooth_curves};
 pub use gap::Gap;
-pub use pair::{ContactPair, SlavePoint};
+pub use pair::traction::{Area, Surface};
+pub use pair::{ContactPair, Partner, SlavePoint};
 
 use std::fmt;
 

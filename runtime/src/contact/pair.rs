@@ -3,12 +3,16 @@
 //! The energy of a pair is the sum over its points of measure times W(g), for a law W given at the call; its gradient
 //! and Hessian over the nodal positions are exact, projection included. The points of the slave are those of a
 //! quadrature rule on its edges, with the measures of the reference shape (2 pi r included where that is meant).
+//! [`traction`] adds up forces that have no energy.
 
 use super::curve::SmoothCurve;
 use super::gap::Gap;
 use super::projection::Master;
 use super::tree::Bounds;
-use super::{ContactError, Point, right_of};
+use super::{ContactError, Point};
+use traction::Surface;
+
+pub mod traction;
 
 /// Quadrature point of a slave edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,15 +23,26 @@ pub struct SlavePoint {
     pub shape: [f64; 3],
     /// Derivatives of the shape functions along the edge, start to end.
     pub slope: [f64; 3],
+    /// Weight of the quadrature, part of the parameter.
+    pub weight: f64,
     /// Reference measure that the point stands for.
     pub measure: f64,
 }
 
 impl SlavePoint {
-    /// Point of a quadratic edge at `t` from 0 (start) to 1 (end).
-    pub fn new(edge: usize, t: f64, measure: f64) -> Self {
+    /// Point of a quadratic edge at `t` from 0 (start) to 1 (end), which stands for this part of the parameter; so does its measure, until another
+    /// is given.
+    pub fn new(edge: usize, t: f64, weight: f64) -> Self {
         let shape = [(1.0 - t) * (1.0 - 2.0 * t), t * (2.0 * t - 1.0), 4.0 * t * (1.0 - t)];
-        Self { edge, shape, slope: [4.0 * t - 3.0, 4.0 * t - 1.0, 4.0 - 8.0 * t], measure }
+        Self { edge, shape, slope: [4.0 * t - 3.0, 4.0 * t - 1.0, 4.0 - 8.0 * t], weight, measure: weight }
+    }
+
+    /// The surface at the point, of an edge with these nodes.
+    pub fn surface(&self, edge: [usize; 3], positions: &[Point]) -> Surface {
+        let sum = |weights: [f64; 3]| {
+            [0, 1].map(|c| (0..3).map(|i| weights[i] * positions[edge[i]][c]).sum::<f64>())
+        };
+        Surface { position: sum(self.shape), tangent: sum(self.slope) }
     }
 }
 
@@ -37,13 +52,24 @@ pub type Law<'a> = &'a dyn Fn(usize, f64) -> [f64; 3];
 /// Coordinate of a node: (node, component).
 pub type Coordinate = (usize, usize);
 
+/// Which point of the master is the partner of a point of the slave.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Partner {
+    /// The closest of those that face it: what may touch it from outside.
+    Facing,
+    /// The nearest of all, ends included: the distance is continuous.
+    Nearest,
+}
+
 /// Slave points against master curves.
 #[derive(Clone, Debug)]
 pub struct ContactPair {
     edges: Vec<[usize; 3]>,
     points: Vec<SlavePoint>,
     master: Master,
+    partner: Partner,
     radius: f64,
+    surfaces: Vec<Surface>,
     gaps: Vec<Option<Gap>>,
 }
 
@@ -56,7 +82,7 @@ impl ContactPair {
         edges: Vec<[usize; 3]>,
         points: Vec<SlavePoint>,
         master: Vec<SmoothCurve>,
-        radius: f64,
+        (partner, radius): (Partner, f64),
     ) -> Result<Self, ContactError> {
         if !(radius > 0.0 && radius.is_finite()) {
             return Err(ContactError::Radius { radius });
@@ -70,8 +96,8 @@ impl ContactPair {
         if let Some(edge) = edges.iter().position(|[_, _, middle]| nodes.binary_search(middle).is_ok()) {
             return Err(ContactError::SelfContact { edge });
         }
-        let gaps = vec![None; points.len()];
-        Ok(Self { edges, points, master: Master::new(master), radius, gaps })
+        let (surfaces, gaps) = (vec![Surface::default(); points.len()], vec![None; points.len()]);
+        Ok(Self { edges, points, master: Master::new(master), partner, radius, surfaces, gaps })
     }
 
     /// Slave points, in the order of [`gaps`](Self::gaps).
@@ -79,7 +105,7 @@ impl ContactPair {
         &self.points
     }
 
-    /// Gap of each point at the positions of the last update; None where no facing master is within the radius.
+    /// Gap of each point at the positions of the last update; None where no partner is within the radius.
     pub fn gaps(&self) -> &[Option<Gap>] {
         &self.gaps
     }
@@ -87,12 +113,14 @@ impl ContactPair {
     /// Finds the gaps at current positions of the nodes.
     pub fn update(&mut self, positions: &[Point]) {
         self.master.refit(positions);
-        for (gap, point) in self.gaps.iter_mut().zip(&self.points) {
+        let found = self.gaps.iter_mut().zip(&mut self.surfaces);
+        for ((gap, surface), point) in found.zip(&self.points) {
             let edge = self.edges[point.edge];
-            let sum = |weights: [f64; 3]| {
-                [0, 1].map(|c| (0..3).map(|i| weights[i] * positions[edge[i]][c]).sum::<f64>())
+            *surface = point.surface(edge, positions);
+            let closest = match self.partner {
+                Partner::Facing => self.master.closest(surface.position, surface.normal(), self.radius),
+                Partner::Nearest => self.master.nearest(surface.position, self.radius),
             };
-            let closest = self.master.closest(sum(point.shape), right_of(sum(point.slope)), self.radius);
             *gap = closest.map(|projection| {
                 Gap::new(edge, point.shape, &self.master.curves()[projection.location.curve], &projection)
             });
@@ -139,17 +167,33 @@ impl ContactPair {
         })
     }
 
-    /// For each slave edge, the master nodes (ascending) of all curve pieces within `radius`: the couplings to provide
-    /// in a sparsity pattern so that the pair may move by about that much. Leaves the gaps as they are.
-    pub fn potential_nodes(&mut self, positions: &[Point], radius: f64) -> Vec<Vec<usize>> {
-        self.master.refit(positions);
+    /// For each slave edge, the master nodes (ascending) of all curve pieces within `radius`, and of those within `margin` of the closest points
+    /// of its gaps below `limit`: the couplings to provide in a sparsity pattern so that the pair may move by about that much. The gaps are
+    /// those of the last [`update`](Self::update), at the same positions.
+    pub fn potential_nodes(
+        &self,
+        positions: &[Point],
+        radius: f64,
+        (limit, margin): (f64, f64),
+    ) -> Vec<Vec<usize>> {
         let near = |edge: &[usize; 3]| {
             let [start, end, middle] = edge.map(|node| positions[node]);
             // The control point between the ends of the parabola, whose triangle holds the edge.
             let control = [0, 1].map(|c| 2.0 * middle[c] - 0.5 * (start[c] + end[c]));
             self.master.nodes_near(Bounds::of([start, end, control]).grown(radius))
         };
-        self.edges.iter().map(near).collect()
+        let mut nodes: Vec<Vec<usize>> = self.edges.iter().map(near).collect();
+        for ((gap, surface), point) in self.gaps.iter().zip(&self.surfaces).zip(&self.points) {
+            if let Some(gap) = gap.as_ref().filter(|gap| gap.value < limit) {
+                let closest = [0, 1].map(|c| surface.position[c] - gap.value * gap.normal[c]);
+                nodes[point.edge].extend(self.master.nodes_near(Bounds::of([closest]).grown(margin)));
+            }
+        }
+        for nodes in &mut nodes {
+            nodes.sort_unstable();
+            nodes.dedup();
+        }
+        nodes
     }
 
     /// Whether a pattern with the couplings `potential` (see [`potential_nodes`](Self::potential_nodes)) holds those of

@@ -2,7 +2,8 @@
 //!
 //! Boxes of the spans form a tree that is refitted to the positions; spans are visited nearest first, and in each span
 //! the local minima of the distance are the zeros of phi(s) = (x_s - x(s)) . x'(s) where phi falls, found by Newton's
-//! method safeguarded by bisection. Only points where the surfaces face each other count.
+//! method safeguarded by bisection. [`Master::closest`] counts only points where the surfaces face each other;
+//! [`Master::nearest`] counts all, the ends of curves included, so that the distance is continuous wherever the point goes.
 
 use super::curve::{Cubic, SmoothCurve};
 use super::tree::{Bounds, BoxTree};
@@ -29,10 +30,12 @@ pub struct Projection {
     pub location: Location,
     /// Signed distance: positive outside the master body, negative inside.
     pub gap: f64,
-    /// Outward unit normal of the master there.
+    /// Outward unit normal of the master there; at an end of a curve the direction from it to the point.
     pub normal: Point,
-    /// Position and its first and second derivative by the parameter of the curve.
+    /// Position and its first and second derivative by the parameter of the curve; at an end the first is normal to the normal, the second zero.
     pub curve: [Point; 3],
+    /// It is an end of a curve, nearer than its neighbourhood.
+    pub end: bool,
 }
 
 /// Curves of a master surface at the current positions.
@@ -102,20 +105,56 @@ impl Master {
     /// None where there is no such point, in particular beyond the ends of all curves. Among equally close points the
     /// first in the order of the curves is taken.
     pub fn closest(&self, point: Point, normal: Point, radius: f64) -> Option<Projection> {
+        self.best(point, radius, |piece, found| {
+            self.minima(piece, point).filter(|p| dot(p.normal, normal) < 0.0).for_each(found);
+        })
+    }
+
+    /// Nearest point within `radius` of `point`, wherever it faces, the ends of the curves included.
+    ///
+    /// Among equally near points the first in the order of the curves is taken.
+    pub fn nearest(&self, point: Point, radius: f64) -> Option<Projection> {
+        self.best(point, radius, |piece, found| {
+            self.minima(piece, point).chain(self.ends(piece, point)).for_each(found);
+        })
+    }
+
+    /// The nearest of the points that `candidates` hands over for each piece.
+    fn best(
+        &self,
+        point: Point,
+        radius: f64,
+        candidates: impl Fn(&Piece, &mut dyn FnMut(Projection)),
+    ) -> Option<Projection> {
         let mut best: Option<(usize, Projection)> = None;
         self.tree.visit_nearest(point, radius, |index| {
-            for projection in self.minima(&self.pieces[index], point) {
-                let facing = dot(projection.normal, normal) < 0.0;
+            candidates(&self.pieces[index], &mut |projection| {
                 let closer = best.is_none_or(|(other, nearest)| {
                     (projection.gap.abs(), index) < (nearest.gap.abs(), other)
                 });
-                if facing && closer && projection.gap.abs() <= radius {
+                if closer && projection.gap.abs() <= radius {
                     best = Some((index, projection));
                 }
-            }
+            });
             best.map_or(radius, |(_, nearest)| nearest.gap.abs())
         });
         best.map(|(_, projection)| projection)
+    }
+
+    /// Free ends of the curve on a piece that are nearer to a point than the piece beside them.
+    fn ends(&self, piece: &Piece, point: Point) -> impl Iterator<Item = Projection> {
+        let (curve, span) = (piece.curve, piece.span);
+        let smooth = &self.curves[curve];
+        let (axis, last) = (smooth.ends_on_axis(), smooth.span_count() - 1);
+        let free = [span == 0 && !axis[0], span == last && !axis[1]].map(|end| end && !smooth.is_closed());
+        let (ends, length) = (piece.ends, piece.cubic.length);
+        (0..2).filter_map(move |k| {
+            let [position, tangent] = ends[k];
+            let along = dot(difference(point, position), tangent);
+            let beyond = if k == 0 { along < 0.0 } else { along > 0.0 };
+            let location = Location { curve, span, offset: if k == 0 { 0.0 } else { length } };
+            (free[k] && beyond).then(|| project_on_end(position, point, location))
+        })
     }
 
     /// Nodes of the spans whose boxes overlap a box, ascending, each once.
@@ -185,7 +224,15 @@ fn falling_zero(cubic: &Cubic, point: Point, [mut low, mut high]: [f64; 2]) -> f
 fn project(cubic: &Cubic, point: Point, location: Location) -> Projection {
     let curve = cubic.evaluate(location.offset);
     let normal = right_of(curve[1]);
-    Projection { location, gap: dot(difference(point, curve[0]), normal), normal, curve }
+    Projection { location, gap: dot(difference(point, curve[0]), normal), normal, curve, end: false }
+}
+
+/// An end that is not at the point itself.
+fn project_on_end(end: Point, point: Point, location: Location) -> Projection {
+    let distance = difference(point, end);
+    let gap = dot(distance, distance).sqrt();
+    let normal = distance.map(|d| d / gap);
+    Projection { location, gap, normal, curve: [end, [-normal[1], normal[0]], [0.0; 2]], end: true }
 }
 
 #[cfg(test)]

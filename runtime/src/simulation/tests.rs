@@ -136,6 +136,7 @@ const fn program(solve: fn(&[f64]) -> Solve) -> Program {
         ],
         pairs: &[],
         pair_integrals: &[],
+        pair_loads: &[],
         couplings: None,
         state_system: Some(StateSystem {
             switches: 0,

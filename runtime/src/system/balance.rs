@@ -1,7 +1,7 @@
 //! The balance of the fields: its residual, its tangent and the outer products of the functionals.
 
 use super::System;
-use super::contact::Curvature;
+use super::contact::{Curvature, GlobalColumns, PairOn};
 use super::newton::StageProblem;
 use super::observables::ObservableOn;
 use super::states::Stage as StateStage;
@@ -234,7 +234,9 @@ impl System {
             solver.sensitivity(&self.g, alpha, &mut of_states);
         }
         let mixing = self.mixing(alpha, &of_states);
-        let read_by_integrals = self.terms.iter().any(|term| term.integral.global_tangent.is_some());
+        let of_pairs = self.pairs.iter().any(PairOn::reads_globals);
+        let read_by_integrals =
+            of_pairs || self.terms.iter().any(|term| term.integral.global_tangent.is_some());
         let squares = if read_by_integrals { None } else { squares(count, &mixing) };
         if let Some(squares) = squares {
             let columns = squares.iter().flat_map(|(_, square)| self.blend_of_gradients(square)).collect();
@@ -275,7 +277,7 @@ impl System {
         self.restrict(&blend)
     }
 
-    /// Integrals that read states or functionals: their share of the columns b_j.
+    /// Integrals and loads on pairs that read states or functionals: their share of the columns b_j.
     fn add_global_tangents(
         &mut self,
         y: &[f64],
@@ -286,11 +288,17 @@ impl System {
     ) {
         let (states, count) = (self.program.states.len(), columns.len());
         let at = At { y, rates, g: &self.g, alpha };
+        let of_pairs =
+            self.pairs.iter().flat_map(|pair| pair.global_tangents(&self.unknowns, &self.g, alpha));
+        let mut all: Vec<GlobalColumns> = of_pairs.collect();
         for term in &mut self.terms {
             let Some(tangent) = &term.integral.global_tangent else { continue };
             let mut by_slot = vec![vec![0.0; y.len()]; tangent.slots.len()];
             term.add_global_tangent(at, tangent, &mut by_slot);
-            for (slot, by) in tangent.slots.iter().zip(&by_slot) {
+            all.push((tangent.slots, by_slot));
+        }
+        for (slots, by_slot) in &all {
+            for (slot, by) in slots.iter().zip(by_slot) {
                 for (j, column) in columns.iter_mut().enumerate() {
                     let factor = match slot.checked_sub(states) {
                         Some(functional) => f64::from(u8::from(functional == j)),

@@ -1,19 +1,15 @@
-//! Contact pairs of a program on a mesh: surfaces from its paths, gaps at the current displacement, energies of the gap.
+//! Contact pairs of a program on a mesh: gaps at the current displacement, energies of the gap and loads on the surfaces.
 
-use super::globals::quadrature_points;
+mod side;
+
 use super::unknowns::{FieldNumbers, NONE, Unknowns};
-use crate::contact::{ContactPair, Point, SlavePoint, smooth_curves};
+use crate::contact::{Area, Partner, Point};
 use crate::error::Error;
-use crate::generated::{Pair, PairIntegral, Program};
+use crate::generated::{Domain, ObservableKind, Pair, PairIntegral, PairLoad, PairValue, Program, Sides};
 use crate::mesh::Mesh;
 use crate::solve::sparse::{MatrixKind, SparsePattern};
-use ansatz_elements::Element;
-use std::f64::consts::FRAC_PI_6;
+use side::{Side, chains};
 
-/// Degree of the quadrature on slave edges: 4 points.
-const DEGREE: usize = 7;
-/// Surfaces are smooth across vertices that turn by less than this.
-const CORNER: f64 = FRAC_PI_6;
 /// How far contact may move, in lengths of the longest slave edge, before the matrix pattern is made again.
 const MARGIN: f64 = 4.0;
 /// Samples for the gap beyond which all laws vanish.
@@ -28,22 +24,16 @@ pub enum Curvature {
     Dropped,
 }
 
-/// One direction of a pair: the points of one surface against the curves of the other.
-struct Side {
-    pair: ContactPair,
-    /// Reference position of each point.
-    x: Vec<Point>,
-    /// Slave edges.
-    edges: Vec<[usize; 3]>,
-    /// Master nodes that the matrix pattern couples to each slave edge.
-    potential: Vec<Vec<usize>>,
-}
+/// States and functionals (numbered one after another), and d residual / d each of them.
+pub type GlobalColumns = (&'static [usize], Vec<Vec<f64>>);
 
 /// A contact pair on a mesh.
 pub struct PairOn {
-    sides: Vec<Side>,
-    /// With whether each is integrated over both sides.
+    /// First and second, where anything needs them.
+    sides: [Option<Side>; 2],
     integrals: Vec<&'static PairIntegral>,
+    loads: Vec<&'static PairLoad>,
+    weight: fn(Point) -> f64,
     displacement: usize,
     search: f64,
     /// Gap beyond which every law is zero.
@@ -70,18 +60,27 @@ impl PairOn {
     ) -> Result<Self, Error> {
         let integrals: Vec<&PairIntegral> =
             program.pair_integrals.iter().filter(|i| i.pair == number).collect();
+        let loads: Vec<&PairLoad> = program.pair_loads.iter().filter(|load| load.pair == number).collect();
         let search = (pair.search)(g);
-        let (first, second) = (chains(mesh, pair.first)?, chains(mesh, pair.second)?);
-        let mut sides = vec![Side::new(program, mesh, &first, &second, search)?];
-        if integrals.iter().any(|i| i.both) {
-            sides.push(Side::new(program, mesh, &second, &first, search)?);
-        }
-        let edges = sides.iter().flat_map(|side| &side.edges);
+        let regions: Vec<&str> =
+            program.fields[pair.displacement].domains.iter().flat_map(cells).copied().collect();
+        let surfaces = [chains(mesh, pair.first, &regions)?, chains(mesh, pair.second, &regions)?];
+        let [first, second] = needed(program, number);
+        // Forces at a distance must not jump where surfaces turn away from each other.
+        let partner = if loads.is_empty() { Partner::Facing } else { Partner::Nearest };
+        let side = |slave: usize| {
+            Side::new(program, mesh, &surfaces[slave], &surfaces[1 - slave], (partner, search))
+        };
+        let sides = [first.then(|| side(0)).transpose()?, second.then(|| side(1)).transpose()?];
+        let edges = sides.iter().flatten().flat_map(|side| &side.edges);
         let longest = edges.map(|e| distance(mesh.nodes[e[0]], mesh.nodes[e[1]])).fold(0.0, f64::max);
         Ok(Self {
-            reach: reach(&integrals, search, g),
+            // Forces seldom end before the search does, and may grow with what is not known yet.
+            reach: if loads.is_empty() { reach(&integrals, search, g) } else { search },
             sides,
             integrals,
+            loads,
+            weight: program.weight,
             displacement: pair.displacement,
             search,
             margin: MARGIN * longest,
@@ -92,7 +91,17 @@ impl PairOn {
 
     /// Whether any law acts on it; else it is only looked at.
     pub fn acts(&self) -> bool {
-        !self.integrals.is_empty()
+        !self.integrals.is_empty() || !self.loads.is_empty()
+    }
+
+    /// Whether loads act on it, whose tangent has no symmetry.
+    pub fn is_loaded(&self) -> bool {
+        !self.loads.is_empty()
+    }
+
+    /// Whether a load on it reads states or functionals.
+    pub fn reads_globals(&self) -> bool {
+        self.loads.iter().any(|load| load.global_tangent.is_some())
     }
 
     /// Finds the gaps at the displacement in y; does nothing where they are known already.
@@ -109,22 +118,43 @@ impl PairOn {
             return;
         }
         self.updated = true;
-        self.sides.iter_mut().for_each(|side| side.pair.update(&self.positions));
+        self.sides.iter_mut().flatten().for_each(|side| side.pair.update(&self.positions));
     }
 
-    /// Gap at every point; the search distance where nothing faces it.
-    pub fn gaps(&self) -> impl Iterator<Item = f64> + '_ {
-        let gaps = self.sides.iter().flat_map(|side| side.pair.gaps());
-        gaps.map(|gap| gap.as_ref().map_or(self.search, |g| g.value))
+    /// A value at every point of the surfaces meant that are there; the search distance is the gap where nothing faces a point.
+    pub fn values(&self, sides: Sides, value: PairValue, g: &[f64]) -> impl Iterator<Item = f64> {
+        self.meant(sides).flat_map(move |side| {
+            let points = side.pair.gaps().iter().zip(side.pair.surfaces()).zip(&side.x);
+            points.map(move |((gap, surface), x)| {
+                value(gap.as_ref().map_or(self.search, |gap| gap.value), surface.normal(), *x, g)
+            })
+        })
+    }
+
+    /// Integral of a value over the points that the other surface faces.
+    pub fn integral(&self, sides: Sides, current: bool, value: PairValue, g: &[f64]) -> f64 {
+        let area = self.area(current);
+        let of = |side: &Side| side.pair.integral(area, &|k, gap, normal| value(gap, normal, side.x[k], g));
+        self.meant(sides).map(of).sum()
+    }
+
+    fn area(&self, current: bool) -> Area {
+        if current { Area::Current(self.weight) } else { Area::Reference }
+    }
+
+    fn meant(&self, sides: Sides) -> impl Iterator<Item = &Side> {
+        let meant = self.sides.iter().enumerate().filter(move |(k, _)| sides.has(*k));
+        meant.filter_map(|(_, side)| side.as_ref())
     }
 
     /// Groups of unknowns that contact may couple until the surfaces have moved by the margin, around the last update.
     pub fn couplings(&mut self, unknowns: &Unknowns) -> Vec<Vec<u32>> {
         let field = &unknowns.fields[self.displacement];
-        let radius = self.reach + self.margin;
+        let (reach, margin) = (self.reach, self.margin);
+        let radius = reach.min(margin) + margin;
         let mut groups = Vec::new();
-        for side in &mut self.sides {
-            side.potential = side.pair.potential_nodes(&self.positions, radius);
+        for side in self.sides.iter_mut().flatten() {
+            side.potential = side.pair.potential_nodes(&self.positions, radius, (reach, margin));
             for (edge, masters) in side.edges.iter().zip(&side.potential).filter(|(_, m)| !m.is_empty()) {
                 let nodes = edge.iter().chain(masters);
                 groups.push(nodes.flat_map(|&n| unknowns_of(field, n)).map(|u| u as u32).collect());
@@ -135,10 +165,11 @@ impl PairOn {
 
     /// Whether the couplings of the last [`PairOn::couplings`] hold those of the present gaps.
     pub fn covered(&self) -> bool {
-        self.sides.iter().all(|side| side.pair.covered(&side.potential, self.reach.max(f64::MIN_POSITIVE)))
+        let limit = self.reach.max(f64::MIN_POSITIVE);
+        self.sides.iter().flatten().all(|side| side.pair.covered(&side.potential, limit))
     }
 
-    /// Adds the residual of the integrals of wanted blocks.
+    /// Adds the residual of the energies and loads of wanted blocks.
     pub fn add_residual(
         &self,
         unknowns: &Unknowns,
@@ -155,9 +186,51 @@ impl PairOn {
                 }
             });
         }
+        for load in self.loads.iter().filter(|load| wanted(load.block)) {
+            let flux = |x: Point, gap: f64, normal: Point| traction(load, x, gap, normal, g)[0];
+            self.add_work(load, field, &flux, residual);
+        }
     }
 
-    /// Adds residual and tangent of all integrals; `values` has a spare last entry.
+    /// Adds the work of a flux on the surfaces of a load.
+    fn add_work(
+        &self,
+        load: &PairLoad,
+        field: &FieldNumbers,
+        flux: &dyn Fn(Point, f64, Point) -> Point,
+        sum: &mut [f64],
+    ) {
+        for side in self.meant(load.sides) {
+            let flux = |k: usize, gap: f64, normal: Point| flux(side.x[k], gap, normal);
+            side.pair.add_work(self.area(load.current), &flux, |(node, component), value| {
+                if let Some(unknown) = field.unknown(node, component) {
+                    sum[unknown] += value;
+                }
+            });
+        }
+    }
+
+    /// For each load that reads states or functionals, which ones, and d residual / d each of them.
+    pub fn global_tangents(&self, unknowns: &Unknowns, g: &[f64], alpha: f64) -> Vec<GlobalColumns> {
+        let field = &unknowns.fields[self.displacement];
+        let with_globals = self.loads.iter().filter_map(|load| Some((load, load.global_tangent.as_ref()?)));
+        let columns = with_globals.map(|(load, tangent)| {
+            let column = |slot: usize| {
+                let mut sum = vec![0.0; unknowns.length];
+                let flux = |x: Point, gap: f64, normal: Point| {
+                    let mut out = vec![[0.0; 2]; tangent.slots.len()];
+                    (tangent.law)(gap, normal, x, g, alpha, &mut out);
+                    out[slot]
+                };
+                self.add_work(load, field, &flux, &mut sum);
+                sum
+            };
+            (tangent.slots, (0..tangent.slots.len()).map(column).collect())
+        });
+        columns.collect()
+    }
+
+    /// Adds residual and tangent of all energies and loads; `values` has a spare last entry.
     pub fn add_tangent(
         &self,
         unknowns: &Unknowns,
@@ -174,64 +247,65 @@ impl PairOn {
             let unknown = field.unknown(node, component)?;
             Some(equations[unknown]).filter(|&e| e != NONE)
         };
+        let mut add = |row, column, value: f64| {
+            let (Some(row), Some(column)) = (equation(row), equation(column)) else { return };
+            if pattern.kind() == MatrixKind::Symmetric && row < column {
+                return;
+            }
+            if let Some(position) = pattern.position(row, column) {
+                values[position] += value;
+            }
+        };
         for (integral, side) in self.integrals_on_sides() {
             let law = |point: usize, gap: f64| {
                 let [energy, force, stiffness] = (integral.law)(gap, side.x[point], g);
                 [energy, if curvature == Curvature::Kept { force } else { 0.0 }, stiffness]
             };
-            side.pair.hessian(&law, |row, column, value| {
-                let (Some(row), Some(column)) = (equation(row), equation(column)) else { return };
-                if pattern.kind() == MatrixKind::Symmetric && row < column {
-                    return;
-                }
-                if let Some(position) = pattern.position(row, column) {
-                    values[position] += value;
-                }
-            });
+            side.pair.hessian(&law, &mut add);
+        }
+        for load in &self.loads {
+            for side in self.meant(load.sides) {
+                let law = |k: usize, gap: f64, normal: Point| traction(load, side.x[k], gap, normal, g);
+                side.pair.add_work_tangent(self.area(load.current), &law, &mut add);
+            }
         }
     }
 
     fn integrals_on_sides(&self) -> impl Iterator<Item = (&'static PairIntegral, &Side)> {
-        self.integrals.iter().flat_map(|&integral| {
-            let sides = if integral.both { &self.sides[..] } else { &self.sides[..1] };
-            sides.iter().map(move |side| (integral, side))
-        })
+        let on_sides =
+            |&integral: &&'static PairIntegral| self.meant(integral.sides).map(move |side| (integral, side));
+        self.integrals.iter().flat_map(on_sides)
     }
 }
 
-impl Side {
-    fn new(
-        program: &Program,
-        mesh: &Mesh,
-        slave: &[Vec<[usize; 3]>],
-        master: &[Vec<[usize; 3]>],
-        search: f64,
-    ) -> Result<Self, Error> {
-        let edges: Vec<[usize; 3]> = slave.iter().flatten().copied().collect();
-        let mut points = Vec::new();
-        let mut x = Vec::new();
-        for (number, edge) in edges.iter().enumerate() {
-            let nodes = edge.map(|n| n as u32);
-            for (local, position, size) in quadrature_points(mesh, Element::P2_SEGMENT, &nodes, DEGREE) {
-                points.push(SlavePoint::new(number, local[0], size * (program.weight)(position)));
-                x.push(position);
-            }
+/// The surfaces of a pair that laws or outputs need, at least one.
+fn needed(program: &Program, number: usize) -> [bool; 2] {
+    let laws = program.pair_integrals.iter().filter(|i| i.pair == number).map(|i| i.sides);
+    let loads = program.pair_loads.iter().filter(|load| load.pair == number).map(|load| load.sides);
+    let looked_at = program.observables.iter().filter_map(|observable| match observable.kind {
+        ObservableKind::PairIntegral { pair, sides, .. } if pair == number => Some(sides),
+        ObservableKind::PairMin(pair, sides, _) | ObservableKind::PairMax(pair, sides, _)
+            if pair == number =>
+        {
+            Some(sides).filter(|sides| *sides != Sides::Both)
         }
-        let contact = |e: crate::contact::ContactError| Error::Model(e.to_string());
-        let mut curves = Vec::new();
-        for chain in master {
-            let closed = chain.first().map(|e| e[0]) == chain.last().map(|e| e[1]);
-            let mut nodes: Vec<usize> = chain.iter().flat_map(|e| [e[0], e[2]]).collect();
-            if !closed {
-                nodes.extend(chain.last().map(|e| e[1]));
-            }
-            let smooth = smooth_curves(&nodes, closed, program.axisymmetric, &mesh.nodes, CORNER);
-            curves.extend(smooth.map_err(contact)?);
-        }
-        let pair = ContactPair::new(edges.clone(), points, curves, search).map_err(contact)?;
-        let potential = vec![Vec::new(); edges.len()];
-        Ok(Self { pair, x, edges, potential })
-    }
+        _ => None,
+    });
+    let all: Vec<Sides> = laws.chain(loads).chain(looked_at).collect();
+    let [first, second] = [0, 1].map(|side| all.iter().any(|sides| sides.has(side)));
+    [first || !second, second]
+}
+
+/// Regions of a domain.
+fn cells(domain: &Domain) -> &'static [&'static str] {
+    if let Domain::Cells(regions) = domain { regions } else { &[] }
+}
+
+/// Flux and derivatives of a load at a point.
+fn traction(load: &PairLoad, x: Point, gap: f64, normal: Point, g: &[f64]) -> [Point; 4] {
+    let mut out = [[0.0; 2]; 4];
+    (load.law)(gap, normal, x, g, &mut out);
+    out
 }
 
 /// Unknowns of both components at a node.
@@ -248,41 +322,4 @@ fn reach(integrals: &[&PairIntegral], search: f64, g: &[f64]) -> f64 {
 
 fn distance(a: Point, b: Point) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
-}
-
-/// Edges `[start, end, middle]` of a surface with the body on their left, as chains of edges that follow each other.
-fn chains(mesh: &Mesh, paths: &[&str]) -> Result<Vec<Vec<[usize; 3]>>, Error> {
-    let mut chains: Vec<Vec<[usize; 3]>> = Vec::new();
-    for path in paths {
-        let mut edges = Vec::new();
-        for edge in mesh.path_edges(path) {
-            let [start, end, middle] = edge.nodes.map(|n| n as usize);
-            match (edge.left, edge.right) {
-                (Some(_), None) => edges.push([start, end, middle]),
-                (None, Some(_)) => edges.insert(0, [end, start, middle]),
-                _ => return Err(inner_surface(path)),
-            }
-        }
-        if edges.is_empty() {
-            return Err(Error::Model(format!("the contact surface `{path}` has no edges")));
-        }
-        append(&mut chains, edges);
-    }
-    Ok(chains)
-}
-
-/// Continues the chain that ends where these edges start, else begins one; cuts where edges do not follow each other.
-fn append(chains: &mut Vec<Vec<[usize; 3]>>, edges: Vec<[usize; 3]>) {
-    for edge in edges {
-        match chains.iter_mut().find(|chain| chain.last().is_some_and(|last| last[1] == edge[0])) {
-            Some(chain) => chain.push(edge),
-            None => chains.push(vec![edge]),
-        }
-    }
-}
-
-fn inner_surface(path: &str) -> Error {
-    Error::Model(format!(
-        "the contact surface `{path}` has bodies on both sides or on none; a surface in contact bounds one body"
-    ))
 }

@@ -113,7 +113,8 @@ impl System {
             .collect::<Result<_, _>>()?;
         let pairs = contact::prepare(program, &mesh, &g)?;
         let observables = observables::prepare(program, &mesh, &unknowns, &g)?;
-        let symmetric = in_the_matrix(&terms, &functionals).all(|t| t.integral.symmetric);
+        let symmetric = in_the_matrix(&terms, &functionals).all(|t| t.integral.symmetric)
+            && !pairs.iter().any(PairOn::is_loaded);
         let kind = if symmetric { MatrixKind::Symmetric } else { MatrixKind::Unsymmetric };
         let pattern = SparsePattern::from_elements(free.len(), kind, []);
         let solver = analyse(&pattern)?;

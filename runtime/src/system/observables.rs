@@ -7,7 +7,7 @@ use super::sides::{SidePoint, side_points};
 use super::terms::{At, Term};
 use super::unknowns::{Unknowns, domain_nodes};
 use crate::error::Error;
-use crate::generated::{Observable, ObservableKind, Program};
+use crate::generated::{Observable, ObservableKind, PairValue, Program, Sides};
 use crate::mesh::Mesh;
 
 /// An observable on a mesh.
@@ -38,14 +38,27 @@ pub enum Value {
         /// Where it is sampled.
         places: Vec<Place>,
     },
-    /// Smallest (sign 1) or largest (sign -1) f(gap) of a pair.
-    Gap {
+    /// Smallest (sign 1) or largest (sign -1) value over surfaces of a pair.
+    PairExtreme {
         /// 1 for the smallest, -1 for the largest.
         sign: f64,
         /// Pair.
         pair: usize,
-        /// f.
-        function: fn(f64, &[f64]) -> f64,
+        /// Surfaces.
+        sides: Sides,
+        /// Value at a point.
+        function: PairValue,
+    },
+    /// Integral over surfaces of a pair.
+    PairIntegral {
+        /// Pair.
+        pair: usize,
+        /// Surfaces.
+        sides: Sides,
+        /// Per area as it has moved.
+        current: bool,
+        /// Integrand at a point.
+        function: PairValue,
     },
 }
 
@@ -60,7 +73,7 @@ impl ObservableOn {
     ) -> Result<Self, Error> {
         let extreme =
             |sign, function, places| Value::Extreme { sign, sampler: Sampler::new(function, mesh), places };
-        let gap = |sign, pair, function| Value::Gap { sign, pair, function };
+        let of_pair = |sign, pair, sides, function| Value::PairExtreme { sign, pair, sides, function };
         Ok(Self::Value(match &observable.kind {
             ObservableKind::Force { block, domain, field, component } => {
                 let nodes = domain_nodes(mesh, *domain)?;
@@ -83,8 +96,11 @@ impl ObservableOn {
             ObservableKind::Point(at, domain, function) => {
                 extreme(1.0, function, vec![locate(mesh, *domain, at(g))?])
             }
-            ObservableKind::PairMin(pair, function) => gap(1.0, *pair, *function),
-            ObservableKind::PairMax(pair, function) => gap(-1.0, *pair, *function),
+            ObservableKind::PairMin(pair, sides, function) => of_pair(1.0, *pair, *sides, *function),
+            ObservableKind::PairMax(pair, sides, function) => of_pair(-1.0, *pair, *sides, *function),
+            &ObservableKind::PairIntegral { pair, sides, current, function } => {
+                Value::PairIntegral { pair, sides, current, function }
+            }
         }))
     }
 }
@@ -112,9 +128,12 @@ impl Value {
                 }
                 *sign * best
             }
-            Self::Gap { sign, pair, function } => {
-                let gaps = pairs[*pair].gaps();
-                *sign * gaps.map(|gap| *sign * function(gap, at.g)).fold(f64::INFINITY, f64::min)
+            Self::PairExtreme { sign, pair, sides, function } => {
+                let values = pairs[*pair].values(*sides, *function, at.g);
+                *sign * values.map(|value| *sign * value).fold(f64::INFINITY, f64::min)
+            }
+            Self::PairIntegral { pair, sides, current, function } => {
+                pairs[*pair].integral(*sides, *current, *function, at.g)
             }
         }
     }

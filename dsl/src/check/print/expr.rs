@@ -184,6 +184,7 @@ impl Model {
             }
             ExprKind::Normal(domain) => format!("normal({})", self.domain(domain)),
             ExprKind::Gap(id) => format!("{}.gap", self.pairs[id.0].name),
+            ExprKind::PairNormal(id) => format!("{}.normal", self.pairs[id.0].name),
             _ => self.bound(e).0,
         }
     }

@@ -121,3 +121,37 @@ fn rigid_motions_leave_the_gap_alone() {
         }
     }
 }
+
+#[test]
+fn at_an_end_of_the_curve_the_derivatives_are_those_of_the_distance_to_it() {
+    let scene = Scene::new(1.7, 0.2, End::Free);
+    let gap = |positions: &[Point]| {
+        let mut master = Master::new(vec![scene.curve.clone()]);
+        master.refit(positions);
+        let x = [0, 1].map(|c| (0..3).map(|i| SHAPE[i] * positions[SLAVE[i]][c]).sum::<f64>());
+        let projection = master.nearest(x, 1.0).unwrap();
+        assert!(projection.end);
+        Gap::new(SLAVE, SHAPE, &scene.curve, &projection)
+    };
+    let exact = gap(&scene.positions);
+    let dense = |gap: &Gap| {
+        let mut gradient = [0.0; 32];
+        for (node, derivative) in gap.nodes().iter().zip(gap.gradient()) {
+            (0..2).for_each(|c| gradient[2 * node + c] += derivative[c]);
+        }
+        gradient
+    };
+    for column in 0..32 {
+        let coordinate = (column / 2, column % 2);
+        let [slope] = central(&scene.positions, coordinate, |p| [gap(p).value]);
+        assert!((dense(&exact)[column] - slope).abs() < 1e-8);
+        let bends = central(&scene.positions, coordinate, |p| dense(&gap(p)));
+        let mut row = [0.0; 32];
+        for (i, a) in exact.nodes().iter().enumerate() {
+            for (j, _) in exact.nodes().iter().enumerate().filter(|(_, b)| **b == coordinate.0) {
+                (0..2).for_each(|c| row[2 * a + c] += exact.hessian((i, c), (j, coordinate.1)));
+            }
+        }
+        assert!(row.iter().zip(bends).all(|(found, bend)| (found - bend).abs() < 1e-7));
+    }
+}

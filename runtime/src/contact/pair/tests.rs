@@ -5,14 +5,14 @@ use super::*;
 const CORNER: f64 = 0.5;
 
 /// Two discs: master of radius 1 at the origin (nodes 0 to 63), slave of radius 0.5 (nodes 64 to 95) at `center`.
-fn discs(center: Point, radius: f64) -> (ContactPair, Vec<Point>) {
+pub(super) fn discs(center: Point, radius: f64) -> (ContactPair, Vec<Point>) {
     let mut positions = circle([0.0; 2], 1.0, 32);
     positions.extend(circle(center, 0.5, 16));
     let master = smooth_curves(&(0..64).collect::<Vec<_>>(), true, false, &positions, CORNER).unwrap();
     let edges: Vec<[usize; 3]> =
         (0..16).map(|e| [64 + 2 * e, 64 + (2 * e + 2) % 32, 64 + 2 * e + 1]).collect();
     let points = (0..16).flat_map(|e| [0.2, 0.5, 0.8].map(|t| SlavePoint::new(e, t, 1.0))).collect();
-    let mut pair = ContactPair::new(edges, points, master, radius).unwrap();
+    let mut pair = ContactPair::new(edges, points, master, (Partner::Facing, radius)).unwrap();
     pair.update(&positions);
     (pair, positions)
 }
@@ -133,7 +133,7 @@ fn results_repeat_to_the_last_bit() {
 #[test]
 fn patterns_cover_motion_within_their_radius_only() {
     let (mut pair, mut positions) = discs([1.45, 0.0], 0.6);
-    let potential = pair.potential_nodes(&positions, 0.2);
+    let potential = pair.potential_nodes(&positions, 0.2, (0.0, 0.0));
     assert!(pair.covered(&potential, 0.0) && pair.covered(&potential, 0.1));
     assert!(potential.iter().any(Vec::is_empty) && potential.iter().any(|nodes| nodes.len() > 6));
     for (y, covered) in [(0.05, true), (0.6, false)] {
@@ -161,7 +161,13 @@ fn surfaces_that_share_an_edge_and_useless_radii_are_refused() {
     let nodes = arc([0.0; 2], 1.0, [0.0, 2.0], 4, 1.0);
     let curves = smooth_curves(&[0, 1, 2, 3, 4], false, false, &nodes, CORNER).unwrap();
     let pair = |edge, radius| {
-        ContactPair::new(vec![edge], vec![SlavePoint::new(0, 0.5, 1.0)], curves.clone(), radius).map(|_| ())
+        ContactPair::new(
+            vec![edge],
+            vec![SlavePoint::new(0, 0.5, 1.0)],
+            curves.clone(),
+            (Partner::Facing, radius),
+        )
+        .map(|_| ())
     };
     assert_eq!(pair([2, 4, 3], 0.1), Err(ContactError::SelfContact { edge: 0 }));
     assert_eq!(pair([4, 6, 5], 0.1), Ok(()));

@@ -124,3 +124,21 @@ fn nodes_near_a_box_are_those_of_its_spans() {
     let near = master.nodes_near(Bounds::of([polar(1.0, 0.0)]).grown(1e-3));
     assert_eq!(near, [0, 1, 2, 3, 61, 62, 63]);
 }
+
+#[test]
+fn the_nearest_point_may_face_away_or_be_an_end() {
+    let reference = arc([0.0; 2], 1.0, [0.0, 1.0], 6, 1.0);
+    let master = placed(SmoothCurve::open(&identity(13), &reference, [End::Free; 2]).unwrap(), &reference);
+    let turned_away = master.nearest(polar(1.1, 0.5), 0.5).unwrap();
+    assert!(!turned_away.end && (turned_away.gap - 0.1).abs() < 1e-5);
+    for (point, end) in [([0.9, -0.2], [1.0, 0.0]), (polar(1.0, 1.2), polar(1.0, 1.0))] {
+        let found = master.nearest(point, 0.5).unwrap();
+        let distance = difference(point, end);
+        assert!(found.end && (found.gap - distance[0].hypot(distance[1])).abs() < 1e-5);
+        assert!((dot(found.normal, distance) - found.gap).abs() < 1e-5);
+    }
+    assert!(master.nearest([0.9, -0.2], 0.2).is_none());
+    // On its way around the end the distance is continuous.
+    let gap = |angle: f64| master.nearest(polar(1.1, angle), 0.5).unwrap().gap;
+    assert!((gap(1e-7) - gap(-1e-7)).abs() < 1e-6);
+}

@@ -4,9 +4,15 @@ ansatz::include_model!("../dry/model.ansatz");
 ansatz::include_model!("../dry_axis_points/model.ansatz");
 ansatz::include_model!("../dry_printed/model.ansatz");
 ansatz::include_model!("../dry_wide_roof/model.ansatz");
+ansatz::include_model!("../wet_solids/model.ansatz");
 
 use ansatz::generated::Program;
 
 /// All of them.
-pub static PROGRAMS: [&Program; 4] =
-    [&dry_contact::PROGRAM, &dry_axis_points::PROGRAM, &dry_printed::PROGRAM, &dry_wide_roof::PROGRAM];
+pub static PROGRAMS: [&Program; 5] = [
+    &dry_contact::PROGRAM,
+    &dry_axis_points::PROGRAM,
+    &dry_printed::PROGRAM,
+    &dry_wide_roof::PROGRAM,
+    &wet_solids::PROGRAM,
+];

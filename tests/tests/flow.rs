@@ -109,4 +109,8 @@ fn what_newton_does_not_reach_at_once_is_reached_along_a_ramp() {
     assert!(report.iterations < 30, "{report:?}");
     // What was found is a solution by itself: from there one iteration is enough.
     assert!(system.solve_stage(&problem, &mut y).unwrap().iterations <= 1);
+    // The first instant of a run takes the same way, later ones do not.
+    let mut y = system.start().unwrap();
+    assert!(system.solve_instant(&problem, &mut y).is_ok());
+    assert!(system.solve_instant(&problem, &mut start.clone()).is_err());
 }

@@ -1,4 +1,4 @@
-//! Stationary solutions step by step, where Newton's method does not reach them at once.
+//! Stationary solutions and the first of those in time, step by step, where Newton's method does not reach them at once.
 //!
 //! The fields' start is in equilibrium with what is applied there; the rest, held values and loads alike, is brought up from there:
 //! held values go from the start's to the wanted ones, and of the residual that the start leaves a falling part is taken away. Where the
@@ -74,17 +74,19 @@ impl System {
 
     /// Goes along a ramp from the fields' start; nothing, and `y` as it was, if there is no way.
     fn solve_ramped(&mut self, problem: &StageProblem<'_>, y: &mut [f64]) -> Option<NewtonReport> {
-        let mut reached = y.to_vec();
+        let (mut reached, stable_pivots) = (y.to_vec(), self.stable_pivots);
         self.begin_ramp(problem, &mut reached);
         let report = self.climb(problem, &mut reached);
         self.ramp = None;
-        if report.is_some() {
-            y.copy_from_slice(&reached);
+        match report {
+            Some(_) => y.copy_from_slice(&reached),
+            None => self.stable_pivots = stable_pivots,
         }
         report
     }
 
-    /// Solves one stage in time from the prediction `y`.
+    /// Solves one stage in time from the prediction `y`; the first one along a ramp where Newton's method does not reach it at once, because loads
+    /// are there from the start.
     ///
     /// # Errors
     /// As [`Self::solve_stage`], and a free level that nothing can fix.
@@ -93,7 +95,11 @@ impl System {
         problem: &StageProblem<'_>,
         y: &mut [f64],
     ) -> Result<NewtonReport, SolveError> {
-        let report = self.solve_stage(problem, y)?;
+        let first = self.stable_pivots.is_none();
+        let report = match self.solve_stage(problem, y) {
+            Err(at_once) if first => self.solve_ramped(problem, y).ok_or(at_once)?,
+            other => other?,
+        };
         self.settle_levels(problem, y)?;
         Ok(report)
     }

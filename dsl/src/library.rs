@@ -10,9 +10,10 @@ pub struct Module {
 }
 
 /// Every module, by name.
-pub const MODULES: [Module; 3] = [
+pub const MODULES: [Module; 4] = [
     Module { name: "check", text: include_str!("../std/check.ansatz") },
     Module { name: "fluid", text: include_str!("../std/fluid.ansatz") },
+    Module { name: "shell", text: include_str!("../std/shell.ansatz") },
     Module { name: "solid", text: include_str!("../std/solid.ansatz") },
 ];
 

@@ -12,11 +12,15 @@ ansatz::include_model!("../models/named_axis.ansatz");
 ansatz::include_model!("../models/whisker.ansatz");
 ansatz::include_model!("../models/film.ansatz");
 ansatz::include_model!("../models/plates.ansatz");
+ansatz::include_model!("../models/plate.ansatz");
+ansatz::include_model!("../models/roll.ansatz");
+ansatz::include_model!("../models/balloon.ansatz");
+ansatz::include_model!("../models/cave_in.ansatz");
 
 use ansatz::generated::Program;
 
 /// All of them.
-pub static PROGRAMS: [&Program; 12] = [
+pub static PROGRAMS: [&Program; 16] = [
     &patch_plane::PROGRAM,
     &patch_axi::PROGRAM,
     &crushed::PROGRAM,
@@ -29,4 +33,8 @@ pub static PROGRAMS: [&Program; 12] = [
     &whisker::PROGRAM,
     &film::PROGRAM,
     &plates::PROGRAM,
+    &plate::PROGRAM,
+    &roll::PROGRAM,
+    &balloon::PROGRAM,
+    &cave_in::PROGRAM,
 ];

@@ -77,6 +77,16 @@ fn tangents_and_curvatures_are_those_of_the_curve() {
 }
 
 #[test]
+fn current_paths_have_their_own_length_and_normals() {
+    let (_, notes) = ran();
+    let (moved, risen) = (value(&notes, "moved"), value(&notes, "risen"));
+    // The side was 1 mm high and is pulled outwards while its ends come closer: bent, it is longer than the distance of its ends.
+    assert!(moved > 1.0 + risen && moved < 1.0, "{moved}");
+    // Out of the body is to the right of a path that runs counter-clockwise.
+    assert_near(value(&notes, "facing"), moved, 1e-12);
+}
+
+#[test]
 fn mesh_sizes_hold_at_the_ends_of_paths() {
     let (simulation, _) = ran();
     let mesh = &simulation.system().mesh;

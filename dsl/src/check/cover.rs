@@ -14,6 +14,11 @@ impl Model {
         if field.domain.pieces.is_empty() { None } else { self.beyond(domain, &field.domain.pieces) }
     }
 
+    /// The first piece of a domain that is no part of another one.
+    pub(crate) fn outside(&self, domain: &Domain, whole: &Domain) -> Option<Piece> {
+        self.beyond(domain, &whole.pieces)
+    }
+
     fn beyond(&self, domain: &Domain, carriers: &[Piece]) -> Option<Piece> {
         let simple = domain.pieces.iter().flat_map(|piece| self.surfaces(*piece));
         simple.into_iter().find(|piece| !carriers.iter().any(|carrier| self.carries(*carrier, *piece)))

@@ -67,20 +67,39 @@ pub(crate) fn kind(domain: &Domain) -> Kind {
 }
 
 impl Checker<'_> {
-    /// The domain that an expression names, over which one can integrate; its pieces are all cells, all edges or all contact.
+    /// The domain that an expression names, in the reference configuration; its pieces are all cells, all edges or all contact.
     pub(super) fn domain(&mut self, e: &ast::Expr, env: &Env) -> Checked<Domain> {
-        let domain = self.places(e, env)?;
-        if kind(&domain) == Kind::Ends {
+        let domain = self.integrated(e, env)?;
+        if domain.current {
             return Err(self.report(
+                Diagnostic::error(Code::NotOnDomain, e.span, "the reference configuration is meant here")
+                    .help("`current(..)` stands in energies, residuals, loads, `mean` and `integral`"),
+            ));
+        }
+        Ok(domain)
+    }
+
+    /// The domain that an expression names, over which one integrates in the reference or the current configuration.
+    pub(super) fn integrated(&mut self, e: &ast::Expr, env: &Env) -> Checked<Domain> {
+        let domain = self.places(e, env)?;
+        match kind(&domain) {
+            Kind::Ends => Err(self.report(
                 Diagnostic::error(
                     Code::NotOnDomain,
                     e.span,
                     "an end of a path is a point, which has no area",
                 )
                 .help("`hold` and mesh sizes stand there; the value at a point is `e@(x, y)`"),
-            ));
+            )),
+            Kind::Cells if domain.current => {
+                let what = "integrals over the current configuration of regions are not supported";
+                Err(self.report(
+                    Diagnostic::error(Code::Unsupported, e.span, what)
+                        .help("multiply by the change of volume: `integral(det(F(u)) on D)`"),
+                ))
+            }
+            _ => Ok(domain),
         }
-        Ok(domain)
     }
 
     /// The places that an expression names: a domain, or ends of paths.
@@ -88,15 +107,7 @@ impl Checker<'_> {
         let mut pieces = Vec::new();
         self.pieces(e, env, &mut pieces)?;
         self.one_kind(&pieces, e.span)?;
-        let domain = joined(pieces, e.span);
-        if domain.current && kind(&domain) != Kind::Contact {
-            let what = "integrals over the current configuration of regions and paths are not supported";
-            return Err(self.report(
-                Diagnostic::error(Code::Unsupported, e.span, what)
-                    .help("without `current(..)` the reference configuration is meant"),
-            ));
-        }
-        Ok(domain)
+        Ok(joined(pieces, e.span))
     }
 
     /// The regions and paths on which a field lives.

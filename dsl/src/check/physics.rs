@@ -45,7 +45,7 @@ impl Checker<'_> {
 
     /// The domain of a statement; `Ok(None)` if it has none.
     fn on(&mut self, domain: Option<&ast::Expr>, env: &Env) -> Checked<Option<Domain>> {
-        domain.map(|domain| self.domain(domain, env)).transpose()
+        domain.map(|domain| self.integrated(domain, env)).transpose()
     }
 
     fn energy(

@@ -330,6 +330,12 @@ impl<'m> Placer<'m, '_> {
             ExprKind::Normal(_) if super::domain::kind(domain) != super::domain::Kind::Edges => {
                 self.missing(via.unwrap_or(e.span), e.span, domain, "a normal exists on paths only".into());
             }
+            ExprKind::Normal(of) if super::domain::kind(of) == super::domain::Kind::Edges => {
+                if let Some(piece) = self.model.outside(domain, of) {
+                    let message = format!("this normal is not that of {}", self.piece(piece));
+                    self.missing(via.unwrap_or(e.span), e.span, domain, message);
+                }
+            }
             ExprKind::Builtin(Builtin::Along, _)
                 if super::domain::kind(domain) != super::domain::Kind::Edges =>
             {

@@ -32,7 +32,7 @@ impl Checker<'_> {
                 {
                     return self.expr(domain, env);
                 }
-                let domain = self.domain(domain, env);
+                let domain = self.integrated(domain, env);
                 return self.reduce_domain(reduction, value?, domain?, span);
             }
             Some(On::Domain(_)) => None,
@@ -87,11 +87,16 @@ impl Checker<'_> {
         span: Span,
         env: &Env,
     ) -> Checked<Expr> {
-        let domain = self.domain(e, env)?;
+        let domain = self.integrated(e, env)?;
         if domain.pieces.contains(&Piece::Axis) {
             return Err(self.no_measure(domain.span));
         }
         let of = kind(&domain);
+        if domain.current && of == Kind::Edges {
+            let message = "this is the area before anything moves; the current one changes";
+            let help = format!("write `integral(1 on {})`", self.sources.slice(e.span));
+            return Err(self.report(Diagnostic::error(Code::NotOnDomain, span, message).help(help)));
+        }
         if of == Kind::Contact {
             let message = "a contact pair has no measure of its own";
             return Err(self.report(Diagnostic::error(Code::NotOnDomain, span, message).help(format!(
@@ -121,11 +126,11 @@ impl Checker<'_> {
         ))
     }
 
-    /// `normal(D)`: the unit normal out of regions, on the paths that bound them.
+    /// `normal(D)`: the unit normal out of regions, on the paths that bound them, or to the right of paths.
     pub(super) fn normal(&mut self, e: &ast::Expr, span: Span, env: &Env) -> Checked<Expr> {
         let domain = self.domain(e, env)?;
-        if kind(&domain) != Kind::Cells {
-            let message = "a normal points out of a region: name the region, not its boundary";
+        if kind(&domain) == Kind::Contact {
+            let message = "a normal points out of a region, or to the right of a path";
             let diagnostic = Diagnostic::error(Code::NotOnDomain, span, message);
             return Err(self.report(diagnostic.label(e.span, kind(&domain).words())));
         }

@@ -105,7 +105,7 @@ fn along() -> TokenStream {
     quote! {
         /// Derivatives of basis functions by the arc length of an edge.
         #[inline(always)]
-        fn along<S: Simd, const N: usize>(s: S, measure: Lane<S>, reference: &[[f64; 1]; N]) -> [Lane<S>; N] {
+        fn edge_slopes<S: Simd, const N: usize>(s: S, measure: Lane<S>, reference: &[[f64; 1]; N]) -> [Lane<S>; N] {
             let reciprocal = Lane::splat(s, 1.0) / measure;
             let mut slopes = [reciprocal; N];
             for a in 0..N {
@@ -120,7 +120,7 @@ fn tangent() -> TokenStream {
     quote! {
         /// Unit tangent of an edge at a point.
         #[inline(always)]
-        fn tangent<S: Simd, const N: usize>(s: S, x: &[[Lane<S>; 2]; N], gradients: &[[f64; 1]; N], measure: Lane<S>) -> [Lane<S>; 2] {
+        fn edge_tangent<S: Simd, const N: usize>(s: S, x: &[[Lane<S>; 2]; N], gradients: &[[f64; 1]; N], measure: Lane<S>) -> [Lane<S>; 2] {
             let mut t = [Lane::splat(s, 0.0); 2];
             for a in 0..N {
                 for i in 0..2 {
@@ -136,7 +136,7 @@ fn curvature() -> TokenStream {
     quote! {
         /// Curvature vector of a quadratic edge: the derivative of its tangent by the arc length.
         #[inline(always)]
-        fn curvature<S: Simd>(s: S, x: &[[Lane<S>; 2]; 3], tangent: [Lane<S>; 2], measure: Lane<S>) -> [Lane<S>; 2] {
+        fn edge_curvature<S: Simd>(s: S, x: &[[Lane<S>; 2]; 3], tangent: [Lane<S>; 2], measure: Lane<S>) -> [Lane<S>; 2] {
             let scale = Lane::splat(s, 4.0) / (measure * measure);
             let second = [0, 1].map(|i| scale * (x[0][i] + x[1][i] - x[2][i] - x[2][i]));
             let part = tangent[0] * second[0] + tangent[1] * second[1];

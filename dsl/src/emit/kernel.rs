@@ -300,7 +300,7 @@ impl Emitter<'_, '_> {
                     }
                     Cell::Segment => {
                         let slope = format_ident!("along_{field}");
-                        quote!(let #slope = along(s, measure, &#reference[q]);)
+                        quote!(let #slope = edge_slopes(s, measure, &#reference[q]);)
                     }
                 });
             }
@@ -320,9 +320,9 @@ impl Emitter<'_, '_> {
             return TokenStream::new();
         }
         let gradients = tables.gradients(kernel, kernel.geometry);
-        let mut code = vec![quote!(let direction = tangent(s, &x, &#gradients[q], measure);)];
+        let mut code = vec![quote!(let direction = edge_tangent(s, &x, &#gradients[q], measure);)];
         if bends {
-            code.push(quote!(let bend = curvature(s, &x, direction, measure);));
+            code.push(quote!(let bend = edge_curvature(s, &x, direction, measure);));
         }
         for axis in 0..2 {
             let at = count(axis);

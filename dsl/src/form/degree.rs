@@ -3,26 +3,31 @@
 //! Polynomials of moderate degree (masses, linear terms, quadratic convection) are integrated exactly on straight cells. Anything else
 //! (`det(F)^(-2/3)`, `u_r/r`) would ask for ever more points without a gain over the discretisation error: with elements of order k it
 //! gets a rule of degree 2k, which keeps the order of convergence; P2 hyperelasticity has 6 points. Edges are short and often curved:
-//! they always get degree 5, 3 points, which is exact for two quadratic functions and the weight r.
+//! they get degree 5, 3 points, which is exact for two quadratic functions and the weight r. Energies of derivatives along a path get degree 3, 2
+//! points. There the derivatives of quadratic fields are most accurate, and a quadratic edge can be bent without being stretched, so that
+//! thin shells do not lock (Zienkiewicz, Taylor, Too 1971); each of the strains still has a value at as many points as the rank asks for.
 
-use crate::lower::{FieldInput, Lowering, Region, SymbolKind};
+use crate::lower::{Derivative, FieldInput, Lowering, Region, SymbolKind};
 use crate::model::{FieldId, Frame, Space};
 use crate::scalar::degree::degree;
 use crate::scalar::{Id, symbols_of};
 
-/// Degree on every edge.
+/// Degree on edges.
 const EDGE_DEGREE: usize = 5;
+/// Degree on edges of energies with derivatives along them.
+const CURVE_ENERGY_DEGREE: usize = 3;
 
-/// Degree of the rule for an integrand `value` and fluxes against test functions.
+/// Degree of the rule for an integrand `value`, which may be an energy, and fluxes against test functions.
 pub(super) fn quadrature_degree(
     lowering: &Lowering<'_>,
     region: &Region,
-    value: Option<Id>,
+    (value, is_energy): (Option<Id>, bool),
     tests: &[FieldInput],
     flux: &[Id],
 ) -> usize {
     if matches!(region, Region::Edges(_)) {
-        return EDGE_DEGREE;
+        let along = tests.iter().any(|test| test.derivative == Some(Derivative::Along));
+        return if is_energy && along { CURVE_ENERGY_DEGREE } else { EDGE_DEGREE };
     }
     let of =
         |root| degree(&lowering.pool, root, &|symbol| symbol_degree(lowering, lowering.symbols.kind(symbol)));

@@ -66,6 +66,7 @@ impl Physics {
             StatementKind::Energy(density, Some(domain)) => {
                 self.integral(lowering, (block, "energy", span), domain, |lowering| {
                     let density = lowering.scalar_here(density)?;
+                    let density = lowering.measured(density, domain.span)?;
                     Ok(Variation::of_density(lowering, density))
                 })
             }
@@ -73,12 +74,17 @@ impl Physics {
             StatementKind::Residual(residual, domain) => {
                 self.integral(lowering, (block, "residual", span), domain, |lowering| {
                     let residual = lowering.scalar_here(residual)?;
+                    let residual = lowering.measured(residual, domain.span)?;
                     Ok(Variation::of_residual(lowering, residual))
                 })
             }
             StatementKind::Load(of, with, Some(domain)) => {
                 self.integral(lowering, (block, "load", span), domain, |lowering| {
                     let (of, with) = (lowering.components_here(of)?, lowering.components_here(with)?);
+                    let with: Vec<Id> = with
+                        .into_iter()
+                        .map(|with| lowering.measured(with, domain.span))
+                        .collect::<Lowered<_>>()?;
                     Ok(Variation::of_load(lowering, &of, &with))
                 })
             }
@@ -102,13 +108,11 @@ impl Physics {
         domain: &Domain,
         vary: impl FnMut(&mut Lowering<'m>) -> Lowered<Variation>,
     ) -> Lowered<()> {
-        let region = Region::of(domain).ok_or_else(|| {
-            unsupported(
-                domain.span,
-                "only energies of the gap and loads can stand on a contact pair, one pair at a time",
-            )
-        })?;
-        for (region, variation) in lowering.on_parts(&region, vary)? {
+        if domain.pieces.iter().any(|piece| matches!(piece, Piece::Pair(..))) {
+            let what = "only energies of the gap and loads can stand on a contact pair, one pair at a time";
+            return Err(unsupported(domain.span, what));
+        }
+        for (region, variation) in lowering.in_configuration(domain, vary)? {
             if variation.is_zero() {
                 continue;
             }

@@ -169,8 +169,9 @@ pub(super) fn linearise(
     let entries: Vec<Id> = tangent.iter().flatten().copied().collect();
     let symmetric = tests == trials && is_symmetric(&lowering.pool, &entries) != Symmetry::None;
     let globals = global_derivatives(lowering, &flux);
-    let degree = quadrature_degree(lowering, &region, value, &tests, &flux);
     let Origin { name, block, span } = origin;
+    let is_energy = value.is_some() && block.is_some();
+    let degree = quadrature_degree(lowering, &region, (value, is_energy), &tests, &flux);
     let uses = uses.into_iter().collect();
     Term { name, block, span, region, uses, value, tests, flux, trials, tangent, symmetric, globals, degree }
 }

@@ -225,7 +225,7 @@ impl<'m> Lowering<'m> {
         Ok(Value::Scalar(self.input(SymbolKind::Coordinate(axis))))
     }
 
-    fn field(&mut self, field: FieldId, test: bool, span: Span) -> Lowered<Value> {
+    pub(super) fn field(&mut self, field: FieldId, test: bool, span: Span) -> Lowered<Value> {
         if matches!(self.place, Place::Global) {
             return Err(unsupported(
                 span,

@@ -7,6 +7,7 @@
 
 mod algebra;
 mod condition;
+mod configuration;
 mod derivative;
 mod expr;
 mod names;
@@ -19,7 +20,7 @@ mod value;
 use std::collections::BTreeMap;
 
 use crate::diagnostic::{Code, Diagnostic};
-use crate::model::{Expr, LetId, LocalId, Model, PairId, RegionId};
+use crate::model::{Expr, FieldId, LetId, LocalId, Model, PairId, RegionId};
 use crate::scalar::{Id, Pool};
 use crate::source::Span;
 
@@ -84,6 +85,8 @@ pub struct Lowering<'m> {
     /// Names of scalars after what the model calls them: `det_F`, `C_rr`. For readers of emitted code.
     pub hints: BTreeMap<Id, String>,
     place: Place,
+    /// The displacement of the current configuration in which one integrates; none in the reference configuration.
+    moved_by: Option<FieldId>,
     frame: Frame<'m>,
     overrides: BTreeMap<LetId, Value>,
     known_lets: BTreeMap<(LetId, u32), Value>,
@@ -111,6 +114,7 @@ impl<'m> Lowering<'m> {
             run_values: Vec::new(),
             hints: BTreeMap::new(),
             place: Place::Global,
+            moved_by: None,
             frame: Frame::default(),
             overrides: BTreeMap::new(),
             known_lets: BTreeMap::new(),

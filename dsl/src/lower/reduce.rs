@@ -138,16 +138,21 @@ impl<'m> Lowering<'m> {
         domain: &Domain,
         expr: &'m Expr,
     ) -> Lowered<Value> {
-        let region = region_of(domain)?;
         let divisor = match reduction {
-            Reduction::Mean => Some(self.measure(domain)?),
+            Reduction::Mean => Some(self.measure_of(domain)?),
             _ => None,
         };
-        let parts = self.on_parts(&region, |lowering| {
+        let extreme = matches!(reduction, Reduction::Min | Reduction::Max);
+        let parts = self.in_configuration(domain, |lowering| {
             let value = lowering.expr(of)?;
             let value = lowering.shaped(value, &of.ty);
-            Ok(value.components(&mut lowering.pool))
+            let components = value.components(&mut lowering.pool);
+            if extreme {
+                return Ok(components);
+            }
+            components.into_iter().map(|component| lowering.measured(component, domain.span)).collect()
         })?;
+        let region = region_of(domain)?;
         let size = parts.iter().map(|(_, components)| components.len()).min().unwrap_or(0);
         let reduced: Vec<Id> = (0..size)
             .map(|k| match reduction {
@@ -155,10 +160,28 @@ impl<'m> Lowering<'m> {
                     let values = parts.iter().map(|(_, components)| components[k]).collect();
                     Ok(self.quantity(QuantityKind::Extreme(reduction, region.clone(), values), expr))
                 }
-                Reduction::Mean | Reduction::Integral => self.integral(&parts, k, divisor, expr),
+                Reduction::Integral => self.integral(&parts, k, None, expr),
+                Reduction::Mean if domain.current => {
+                    let integral = self.integral(&parts, k, None, expr)?;
+                    Ok(divisor.map_or(integral, |area| self.pool.div(integral, area)))
+                }
+                Reduction::Mean => self.integral(&parts, k, divisor, expr),
             })
             .collect::<Lowered<_>>()?;
         Ok(Value::from_components(&reduced))
+    }
+
+    /// The measure of a domain in its configuration.
+    fn measure_of(&mut self, domain: &Domain) -> Lowered<Id> {
+        if !domain.current {
+            return self.measure(domain);
+        }
+        let parts = self.in_configuration(domain, |lowering| {
+            let one = lowering.pool.one();
+            lowering.measured(one, domain.span)
+        })?;
+        let parts = parts.into_iter().map(|(region, density)| Part { region, density }).collect();
+        Ok(self.share_quantity(QuantityKind::Integral(parts), Dimension::LENGTH.pow(2), domain.span))
     }
 
     /// Integral of component `k` of the parts' densities.

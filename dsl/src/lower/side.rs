@@ -15,17 +15,15 @@ impl Lowering<'_> {
             return Err(internal(span, "a normal away from edges"));
         }
         let Some(Region::Cells(regions)) = Region::of(domain) else {
-            return Err(internal(span, "a normal out of no regions"));
+            return self.normal_of_path(span);
         };
         let side = self.sides.iter().position(|known| *known == regions).unwrap_or_else(|| {
             self.sides.push(regions);
             self.sides.len() - 1
         });
-        let mut components = [self.pool.zero(); 3];
-        for (k, axis) in self.model.coordinates.frame.axes().into_iter().enumerate() {
-            components[axis] = self.input(SymbolKind::Normal(side, k));
-        }
-        Ok(Value::Vector(components))
+        let normal = [0, 1].map(|k| self.input(SymbolKind::Normal(side, k)));
+        let normal = self.moved_normal(normal, span)?;
+        Ok(self.in_plane(normal))
     }
 
     /// The regions from whose cells an integrand on edges is to be evaluated, if it matters: those that its normals point out of, else those in

@@ -76,6 +76,17 @@ fn a_moment_rolls_a_thin_strip_up_to_a_circle_on_a_coarse_mesh() {
     assert_near(rows.column("y_end")[2] / (200.0 / std::f64::consts::PI), 1.0, 1e-3);
 }
 
+#[test]
+fn curvatures_count_from_the_curved_reference() {
+    let rows = Rows::of(&roll::PROGRAM, &roll::Parameters::default().values());
+    let quarter = std::f64::consts::FRAC_PI_2;
+    // Edges are parabolas of 3 degrees.
+    assert_near(rows.last("unturned") / -quarter, 1.0, 1e-4);
+    // The arch of radius 100 starts level and lies straight now: its end is no higher than its start.
+    assert_near(rows.last("x_arch") / (100.0 * quarter), 1.0, 1e-4);
+    assert_near(rows.last("y_arch"), 0.0, 1e-5);
+}
+
 /// Energy per volume of equibiaxial stretch of the compressible neo-Hookean law, where the stretch of the thickness makes it least, by the
 /// stretch; G = 1 and nu = 0.3.
 fn tension(stretch: f64) -> f64 {

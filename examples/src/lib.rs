@@ -9,6 +9,7 @@
 //! | `05_pipe` | [`pipe_flow`] | weak forms of a velocity and a pressure |
 //! | `06_cylinder_flow` | [`cylinder_flow`] | profiles that are held, forces on a body |
 //! | `07_cavity` | [`lid_driven_cavity`] | a pressure without a level |
+//! | `09_sphere_near_wall` | [`sphere_near_wall`] | two regions of one fluid, cells of very different size |
 
 use ansatz::generated::Program;
 
@@ -19,9 +20,10 @@ ansatz::include_model!("../04_indentation/model.ansatz");
 ansatz::include_model!("../05_pipe/model.ansatz");
 ansatz::include_model!("../06_cylinder_flow/model.ansatz");
 ansatz::include_model!("../07_cavity/model.ansatz");
+ansatz::include_model!("../09_sphere_near_wall/model.ansatz");
 
 /// All examples, in order.
-pub static PROGRAMS: [&Program; 7] = [
+pub static PROGRAMS: [&Program; 8] = [
     &pressed_block::PROGRAM,
     &cooks_membrane::PROGRAM,
     &relaxation::PROGRAM,
@@ -29,4 +31,5 @@ pub static PROGRAMS: [&Program; 7] = [
     &pipe_flow::PROGRAM,
     &cylinder_flow::PROGRAM,
     &lid_driven_cavity::PROGRAM,
+    &sphere_near_wall::PROGRAM,
 ];

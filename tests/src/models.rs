@@ -16,11 +16,12 @@ ansatz::include_model!("../models/plate.ansatz");
 ansatz::include_model!("../models/roll.ansatz");
 ansatz::include_model!("../models/balloon.ansatz");
 ansatz::include_model!("../models/cave_in.ansatz");
+ansatz::include_model!("../models/turek_csm1.ansatz");
 
 use ansatz::generated::Program;
 
 /// All of them.
-pub static PROGRAMS: [&Program; 16] = [
+pub static PROGRAMS: [&Program; 17] = [
     &patch_plane::PROGRAM,
     &patch_axi::PROGRAM,
     &crushed::PROGRAM,
@@ -37,4 +38,5 @@ pub static PROGRAMS: [&Program; 16] = [
     &roll::PROGRAM,
     &balloon::PROGRAM,
     &cave_in::PROGRAM,
+    &turek_csm1::PROGRAM,
 ];

@@ -248,6 +248,25 @@ pub struct Pair {
     pub span: Span,
 }
 
+/// `moving D by u;`: a region whose shape follows the bodies around it.
+#[derive(Clone, Copy, Debug)]
+#[allow(missing_docs)]
+pub struct Moving {
+    pub region: RegionId,
+    /// Displacement of the bodies.
+    pub by: FieldId,
+    pub span: Span,
+}
+
+/// `tie a == b`: a field equals another field, or its rate, and what acts on it acts on the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub struct Tie {
+    pub field: FieldId,
+    pub partner: FieldId,
+    pub rate: bool,
+}
+
 /// A statement of a physics block.
 #[derive(Clone, Debug)]
 pub enum StatementKind {
@@ -259,6 +278,8 @@ pub enum StatementKind {
     Load(Expr, Expr, Option<Domain>),
     /// `hold u = g on D`, or one component (tensor index) of it.
     Hold(FieldId, Option<usize>, Expr, Domain),
+    /// `tie a == b on D`
+    Tie(Tie, Domain),
     /// `a == b;`
     Equation(Expr, Expr),
 }
@@ -433,6 +454,15 @@ pub struct Test {
     pub span: Span,
 }
 
+impl Model {
+    /// The region whose mesh a field sees on paths, if that moves; a field on bodies sees theirs.
+    #[must_use]
+    pub fn moving_home(&self, field: FieldId) -> Option<RegionId> {
+        let lives = |region| self.fields[field.0].domain.pieces.contains(&Piece::Region(region));
+        self.moving.iter().map(|moving| moving.region).find(|&region| lives(region))
+    }
+}
+
 /// The checked model.
 #[derive(Clone, Debug)]
 #[allow(missing_docs)]
@@ -453,6 +483,7 @@ pub struct Model {
     pub pairs: Vec<Pair>,
     pub blocks: Vec<Block>,
     pub events: Vec<Event>,
+    pub moving: Vec<Moving>,
     pub solve: Solve,
     pub output: Output,
     pub sweeps: Vec<Sweep>,

@@ -9,6 +9,7 @@
 //! | `05_pipe` | [`pipe_flow`] | weak forms of a velocity and a pressure |
 //! | `06_cylinder_flow` | [`cylinder_flow`] | profiles that are held, forces on a body |
 //! | `07_cavity` | [`lid_driven_cavity`] | a pressure without a level |
+//! | `08_squeeze_film` | [`squeeze_film`] | a fluid between bodies that move |
 //! | `09_sphere_near_wall` | [`sphere_near_wall`] | two regions of one fluid, cells of very different size |
 
 use ansatz::generated::Program;
@@ -20,10 +21,11 @@ ansatz::include_model!("../04_indentation/model.ansatz");
 ansatz::include_model!("../05_pipe/model.ansatz");
 ansatz::include_model!("../06_cylinder_flow/model.ansatz");
 ansatz::include_model!("../07_cavity/model.ansatz");
+ansatz::include_model!("../08_squeeze_film/model.ansatz");
 ansatz::include_model!("../09_sphere_near_wall/model.ansatz");
 
 /// All examples, in order.
-pub static PROGRAMS: [&Program; 8] = [
+pub static PROGRAMS: [&Program; 9] = [
     &pressed_block::PROGRAM,
     &cooks_membrane::PROGRAM,
     &relaxation::PROGRAM,
@@ -31,5 +33,6 @@ pub static PROGRAMS: [&Program; 8] = [
     &pipe_flow::PROGRAM,
     &cylinder_flow::PROGRAM,
     &lid_driven_cavity::PROGRAM,
+    &squeeze_film::PROGRAM,
     &sphere_near_wall::PROGRAM,
 ];

@@ -59,6 +59,8 @@ pub enum Cause {
     Unbalanced(&'static str),
     /// The small system of states has no solution; the text names the equation.
     States(String),
+    /// A moving region cannot be meshed where the last step has left its bodies.
+    Mesh(String),
 }
 
 impl Cause {
@@ -72,7 +74,7 @@ impl Cause {
             Self::Singular(_) => Some(
                 "is there a `hold` for every body? What may move without any force, or has no equation at all, makes the tangent singular",
             ),
-            Self::Unstable(_) | Self::Unbalanced(_) | Self::States(_) => None,
+            Self::Unstable(_) | Self::Unbalanced(_) | Self::States(_) | Self::Mesh(_) => None,
         }
     }
 }
@@ -83,6 +85,7 @@ impl fmt::Display for Cause {
             Self::NoConvergence => write!(f, "Newton's method did not converge"),
             Self::Unstable(n) => write!(f, "the equilibrium found is unstable ({n} negative pivots)"),
             Self::Singular(unknown) => write!(f, "the tangent is singular at {unknown}"),
+            Self::Mesh(why) => write!(f, "{why}"),
             Self::NotFinite => {
                 write!(f, "a value is not finite: an element has turned inside out or a law left its domain")
             }

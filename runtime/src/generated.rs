@@ -63,6 +63,10 @@ pub struct Program {
     pub blocks: &'static [&'static str],
     /// Essential conditions.
     pub holds: &'static [Hold],
+    /// Unknowns that follow others.
+    pub ties: &'static [Tie],
+    /// Regions whose shape follows the bodies around them.
+    pub moving: &'static [Moving],
     /// Integrals that contribute to the balance of the fields.
     pub integrals: &'static [Integral],
     /// Contact pairs.
@@ -132,7 +136,8 @@ pub struct Parameter {
 pub enum Domain {
     /// Cells of these regions.
     Cells(&'static [&'static str]),
-    /// Edges of these paths (`nucleus`) or segments (`nucleus.pull`); `axis` for the symmetry axis.
+    /// Edges of these paths (`nucleus`) or segments (`nucleus.pull`); `axis` for the symmetry axis. Those of a moving region have its name
+    /// before them (`cytosol/nucleus`).
     Edges(&'static [&'static str]),
     /// First and last points of paths: `membrane.start`, `membrane.end`.
     Ends(&'static [&'static str]),
@@ -326,6 +331,25 @@ pub struct Hold {
     pub domain: Domain,
     pub place: &'static str,
     pub value: fn(x: [f64; 2], g: &[f64]) -> f64,
+}
+
+/// `tie a == b on D` or `tie a == dt(b) on D`: a field follows another one at the nodes of a surface, and what acts on it acts on the other.
+#[allow(missing_docs)]
+pub struct Tie {
+    pub field: usize,
+    pub partner: usize,
+    /// It equals the rate of its partner, else its value.
+    pub rate: bool,
+    pub domain: Domain,
+    pub place: &'static str,
+}
+
+/// `moving D by u`: a region whose surface follows a displacement, with a new mesh after every step.
+#[allow(missing_docs)]
+pub struct Moving {
+    pub region: &'static str,
+    /// Displacement field of the bodies around it.
+    pub displacement: usize,
 }
 
 /// Coefficients of functionals in the balance: virtual work sum_k c_k delta Z_k.

@@ -36,6 +36,8 @@ pub struct Frame {
     pub time: f64,
     /// Values of each column, node by node, component by component \[internal units\].
     pub columns: Vec<Vec<f64>>,
+    /// The mesh, where it is another one than at the beginning.
+    pub mesh: Option<Mesh>,
 }
 
 /// Follows a run. Every method may stop the run by an error.

@@ -2,14 +2,15 @@
 
 use crate::error::{Cause, Error, SolveError};
 use crate::generated::{Program, Solve};
-use crate::mesh::{Mesh, MeshError};
+use crate::mesh::{Follower, Mesh, MeshError, MeshSizing};
 use crate::observer::Observer;
 use crate::record::{End, RunRecord};
 use crate::settings;
-use crate::system::{At, FrameSampler, StageProblem, System};
+use crate::system::{At, FrameSampler, StageProblem, System, Transfer};
 use crate::time::integrator::Point;
 use crate::time::run::{Plan, run};
 use crate::time::{Group, ImplicitSystem, Stage};
+use ansatz_geometry::Geometry;
 
 #[cfg(test)]
 mod tests;
@@ -30,8 +31,15 @@ impl Simulation {
         g[program.layout.parameters[0]..program.layout.parameters[1]].copy_from_slice(parameters);
         settings::check(program, &g, parameters)?;
         let geometry = (program.geometry)(&g).map_err(|faults| mesh_error(MeshError::Geometry(faults)))?;
-        let mesh = Mesh::generate(&geometry, &(program.sizing)(&g)).map_err(mesh_error)?;
-        Self::on_mesh(program, parameters, mesh)
+        let sizing = (program.sizing)(&g);
+        let moving: Vec<&str> = program.moving.iter().map(|moving| moving.region).collect();
+        let mut mesh = Mesh::generate_bodies(&geometry, &sizing, &moving).map_err(mesh_error)?;
+        let followers = followers(&geometry, &sizing, &moving)?;
+        let at_rest = mesh.nodes.clone();
+        for follower in &followers {
+            follower.attach(&mut mesh, &at_rest).map_err(mesh_error)?;
+        }
+        Self::put_on(program, parameters, mesh, followers)
     }
 
     /// The same on a mesh from elsewhere.
@@ -39,9 +47,21 @@ impl Simulation {
     /// # Errors
     /// [`Error::Model`] if the model names places that the mesh does not have.
     pub fn on_mesh(program: &'static Program, parameters: &[f64], mesh: Mesh) -> Result<Self, Error> {
-        let system = System::new(program, parameters, mesh)?;
-        let frames = program.frames.iter().map(|f| FrameSampler::new(f, &system.mesh));
-        let frames = frames.collect::<Result<_, _>>()?;
+        if let Some(moving) = program.moving.first() {
+            let message = format!("`{}` moves, so its mesh is made from the model's geometry", moving.region);
+            return Err(Error::Model(message));
+        }
+        Self::put_on(program, parameters, mesh, Vec::new())
+    }
+
+    fn put_on(
+        program: &'static Program,
+        parameters: &[f64],
+        mesh: Mesh,
+        followers: Vec<Follower>,
+    ) -> Result<Self, Error> {
+        let system = System::following(program, parameters, mesh, followers)?;
+        let frames = samplers(&system)?;
         let discretised = Discretised { system, frames };
         Ok(Self { discretised, record: RunRecord::new(program.events) })
     }
@@ -82,6 +102,18 @@ impl Simulation {
     }
 }
 
+/// What meshes the moving regions of a geometry.
+fn followers(geometry: &Geometry, sizing: &MeshSizing, moving: &[&str]) -> Result<Vec<Follower>, Error> {
+    let index = |name: &&str| geometry.regions.iter().position(|region| region.name == **name);
+    let regions = moving.iter().filter_map(index);
+    regions.map(|region| Follower::new(geometry, region, sizing).map_err(mesh_error)).collect()
+}
+
+/// One sampler for each kind of frames.
+fn samplers(system: &System) -> Result<Vec<FrameSampler>, Error> {
+    system.program.frames.iter().map(|frames| FrameSampler::new(frames, &system.mesh)).collect()
+}
+
 /// Faults of the geometry are told as such.
 fn mesh_error(error: MeshError) -> Error {
     match error {
@@ -99,8 +131,11 @@ struct Discretised {
 impl ImplicitSystem for Discretised {
     fn groups(&self) -> Vec<Group> {
         let unknowns = &self.system.unknowns;
-        let fields =
-            unknowns.fields.iter().map(|f| Group { range: f.first..f.first + f.count(), tested: true });
+        let fields = unknowns.fields.iter().enumerate().map(|(k, f)| Group {
+            range: f.first..f.first + f.count(),
+            // What goes from mesh to mesh has errors of its own.
+            tested: !self.system.moves(k),
+        });
         let differential = self.system.program.state_system.as_ref().map_or(&[][..], |s| s.differential);
         let first = unknowns.states;
         let state = |(k, &tested): (usize, &bool)| Group { range: first + k..first + k + 1, tested };
@@ -132,6 +167,28 @@ impl ImplicitSystem for Discretised {
 
     fn set_states(&mut self, time: f64, y: &mut [f64], values: &[(usize, f64)]) -> Result<(), SolveError> {
         self.system.set_states(time, y, values)
+    }
+
+    fn renew(&mut self, point: &Point) -> Result<Option<Transfer>, SolveError> {
+        if !self.system.has_moving_regions() {
+            return Ok(None);
+        }
+        let stuck = |error: Error| SolveError {
+            cause: Cause::Mesh(error.to_string()),
+            time: point.time,
+            step: 0.0,
+            iterations: 0,
+            residual: 0.0,
+            place: String::from("the step before was solved"),
+            terms: Vec::new(),
+        };
+        let transfer = self.system.remesh(&point.values).map_err(stuck)?;
+        self.frames = samplers(&self.system).map_err(stuck)?;
+        Ok(Some(transfer))
+    }
+
+    fn present_mesh(&self) -> Option<Mesh> {
+        self.system.has_moving_regions().then(|| self.system.mesh.clone())
     }
 
     fn observe(&mut self, point: &Point) -> Vec<f64> {

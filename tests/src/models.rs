@@ -17,11 +17,12 @@ ansatz::include_model!("../models/roll.ansatz");
 ansatz::include_model!("../models/balloon.ansatz");
 ansatz::include_model!("../models/cave_in.ansatz");
 ansatz::include_model!("../models/turek_csm1.ansatz");
+ansatz::include_model!("../models/filled_block.ansatz");
 
 use ansatz::generated::Program;
 
 /// All of them.
-pub static PROGRAMS: [&Program; 17] = [
+pub static PROGRAMS: [&Program; 18] = [
     &patch_plane::PROGRAM,
     &patch_axi::PROGRAM,
     &crushed::PROGRAM,
@@ -39,4 +40,5 @@ pub static PROGRAMS: [&Program; 17] = [
     &balloon::PROGRAM,
     &cave_in::PROGRAM,
     &turek_csm1::PROGRAM,
+    &filled_block::PROGRAM,
 ];

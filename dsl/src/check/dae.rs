@@ -132,7 +132,7 @@ fn fields(model: &Model, sink: &mut Sink) {
                     used.insert(id);
                 }
             }),
-            StatementKind::Hold(..) | StatementKind::Equation(..) => {}
+            StatementKind::Hold(..) | StatementKind::Tie(..) | StatementKind::Equation(..) => {}
         }
     }
     for (at, field) in model.fields.iter().enumerate().filter(|(at, _)| !used.contains(&FieldId(*at))) {
@@ -166,7 +166,7 @@ impl System {
                     StatementKind::Energy(e, _) | StatementKind::Load(e, ..) => {
                         states_in(model, e, &mut varied, &mut BTreeSet::new());
                     }
-                    StatementKind::Residual(..) | StatementKind::Hold(..) => {}
+                    StatementKind::Residual(..) | StatementKind::Hold(..) | StatementKind::Tie(..) => {}
                 }
             }
         }

@@ -15,6 +15,7 @@ use ansatz_units::{Unit, UnitSystem, UnitSystemError};
 pub(crate) struct Rest {
     pub(crate) fields: Vec<Field>,
     pub(crate) states: Vec<State>,
+    pub(crate) moving: Vec<crate::model::Moving>,
     pub(crate) mesh: MeshSettings,
     pub(crate) solve: Option<Solve>,
     pub(crate) output: Output,
@@ -144,6 +145,7 @@ pub(super) fn assemble(mut checker: Checker<'_>, program: &Program) -> Model {
         pairs: checker.pairs,
         blocks: checker.blocks,
         events: checker.events,
+        moving: checker.rest.moving,
         solve,
         output: checker.rest.output,
         sweeps: checker.rest.sweeps,

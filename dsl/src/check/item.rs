@@ -105,11 +105,9 @@ impl<'a> Checker<'a> {
                 self.unsupported(Some(&ast.name), item.span, "unknowns at quadrature points (`local`)")
             }
             ItemKind::Moving(ast) => {
-                let name = match &ast.motion {
-                    ast::Motion::Solved { name, .. } => Some(name),
-                    ast::Motion::Given(_) => None,
-                };
-                self.unsupported(name, item.span, "moving domains");
+                if let ast::Motion::Solved { name, .. } = &ast.motion {
+                    self.name_symbol(name, Symbol::Broken);
+                }
             }
             ItemKind::Part(ast) => {
                 self.unsupported(Some(&ast.name), item.span, "parts (`use \"file\" as name`)")
@@ -153,6 +151,7 @@ impl<'a> Checker<'a> {
                     self.event_item(EventId(event), ast);
                     event += 1;
                 }
+                ItemKind::Moving(ast) => self.moving(ast, item.span),
                 ItemKind::Mesh(settings) => self.mesh(settings),
                 ItemKind::Solve(settings) => self.solve(settings),
                 ItemKind::Output(statements) => self.output(statements),

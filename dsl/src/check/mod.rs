@@ -18,6 +18,7 @@ mod function;
 mod geometry;
 mod item;
 mod matching;
+mod moving;
 mod output;
 mod pair;
 mod param;
@@ -63,6 +64,7 @@ pub fn check(program: &Program, sources: &SourceMap, sink: &mut Sink) -> Option<
     place::check(&model, sink);
     if !sink.has_errors() {
         form::check(&model, sink);
+        moving::check(&model, sink);
         work::check(&model, sink);
         dae::check(&model, sources, sink);
     }

@@ -36,9 +36,7 @@ impl Checker<'_> {
                 self.hold(quantity, value, domain.as_ref(), span, env)
             }
             ast::StatementKind::Equation(equation) => self.equation(equation, env),
-            ast::StatementKind::Tie { .. } => {
-                Err(self.report(Diagnostic::error(Code::Unsupported, span, "ties are not supported")))
-            }
+            ast::StatementKind::Tie { equation, domain } => self.tie(equation, domain.as_ref(), span, env),
             ast::StatementKind::Let(_) => Err(Reported),
         }
     }

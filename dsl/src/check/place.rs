@@ -143,6 +143,11 @@ impl<'m> Placer<'m, '_> {
                     self.place(held, Context::on(domain));
                     self.field_on(&self.model.fields[field.0], domain, statement.span, None);
                 }
+                StatementKind::Tie(tie, domain) => {
+                    for field in [tie.field, tie.partner] {
+                        self.field_on(&self.model.fields[field.0], domain, statement.span, None);
+                    }
+                }
                 StatementKind::Equation(a, b) => self.all([a, b], Context::GLOBAL),
             }
         }

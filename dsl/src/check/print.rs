@@ -168,6 +168,11 @@ impl Model {
             StatementKind::Load(q, f, domain) => {
                 format!("load {} with {}{}", self.expr(q), self.expr(f), self.on(domain.as_ref()))
             }
+            StatementKind::Tie(tie, domain) => {
+                let [field, partner] = [tie.field, tie.partner].map(|f| &self.fields[f.0].name);
+                let partner = if tie.rate { format!("dt({partner})") } else { partner.clone() };
+                format!("tie {field} == {partner} on {}", self.domain(domain))
+            }
             StatementKind::Hold(field, component, value, domain) => {
                 let component = component.map_or(String::new(), |i| format!(".{}", self.axis(i)));
                 let name = &self.fields[field.0].name;

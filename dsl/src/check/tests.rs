@@ -34,6 +34,7 @@ fn roots(model: &Model) -> Vec<&Expr> {
             StatementKind::Energy(e, _) | StatementKind::Residual(e, _) | StatementKind::Hold(_, _, e, _) => {
                 roots.push(e)
             }
+            StatementKind::Tie(..) => {}
             StatementKind::Load(a, b, _) | StatementKind::Equation(a, b) => roots.extend([a, b]),
         }
     }

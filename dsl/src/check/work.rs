@@ -44,7 +44,7 @@ fn varied(model: &Model, statement: &StatementKind) -> Option<(BTreeSet<FieldId>
         StatementKind::Load(of, with, place) => {
             (of, dimension(of)? * dimension(with)?, place.as_ref(), with.span, false)
         }
-        StatementKind::Hold(..) | StatementKind::Equation(..) => return None,
+        StatementKind::Hold(..) | StatementKind::Tie(..) | StatementKind::Equation(..) => return None,
     };
     let mut fields = BTreeSet::new();
     super::walk::deep(model, of, &mut |e| match &e.kind {

@@ -4,16 +4,16 @@ use super::body::{Sources, assignments, block, body};
 use super::layout::Slots;
 use super::place;
 use crate::form::{Forms, Hold, PointForm};
-use crate::lower::{Lowering, Region, SymbolKind, region_names};
-use crate::model::{Model, Shape, Space};
+use crate::lower::{Lowering, Region, SymbolKind, names_for, region_names};
+use crate::model::{FieldId, Model, Shape, Space};
 use crate::scalar::{Id, symbols_of};
 use crate::source::SourceMap;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-/// `Domain::Cells(..)` or `Domain::Edges(..)`.
-pub fn domain(model: &Model, region: &Region) -> TokenStream {
-    let names = region_names(model, region);
+/// `Domain::Cells(..)` or `Domain::Edges(..)` for these fields.
+pub fn domain(model: &Model, region: &Region, fields: impl IntoIterator<Item = FieldId>) -> TokenStream {
+    let names = names_for(model, region, fields.into_iter());
     match region {
         Region::Cells(_) => quote!(Domain::Cells(&[#(#names),*])),
         Region::Edges(_) => quote!(Domain::Edges(&[#(#names),*])),
@@ -85,9 +85,30 @@ fn one_hold(
     hold: &Hold,
 ) -> TokenStream {
     let [field, component] = [hold.field.0, hold.component].map(Literal::usize_unsuffixed);
-    let (domain, place) = (domain(model, &hold.region), place(sources, hold.span));
+    let (domain, place) = (domain(model, &hold.region, [hold.field]), place(sources, hold.span));
     let value = at_point(lowering, slots, &[hold.value], false);
     quote!(Hold { field: #field, component: #component, domain: #domain, place: #place, value: #value })
+}
+
+/// The entries of `Program::ties`.
+pub fn ties(forms: &Forms<'_>, sources: &SourceMap) -> TokenStream {
+    let entries = forms.ties.iter().map(|on| {
+        let [field, partner] = [on.tie.field, on.tie.partner].map(|f| Literal::usize_unsuffixed(f.0));
+        let (rate, place) = (on.tie.rate, place(sources, on.span));
+        let domain = domain(forms.lowering.model, &on.region, [on.tie.field]);
+        quote!(Tie { field: #field, partner: #partner, rate: #rate, domain: #domain, place: #place })
+    });
+    quote!(&[#(#entries),*])
+}
+
+/// The entries of `Program::moving`.
+pub fn moving(model: &Model) -> TokenStream {
+    let entries = model.moving.iter().map(|moving| {
+        let region = &model.geometry.regions[moving.region.0].name;
+        let displacement = Literal::usize_unsuffixed(moving.by.0);
+        quote!(Moving { region: #region, displacement: #displacement })
+    });
+    quote!(&[#(#entries),*])
 }
 
 /// Both components of the normal that the roots read, which stand behind the other inputs.

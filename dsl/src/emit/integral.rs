@@ -35,7 +35,7 @@ impl Emitted {
         let (name, place) = (term.name.replacen(' ', ": ", 1), place(sources, term.span));
         let about = format!("`{}`, {place}", term.name);
         let block = Literal::usize_unsuffixed(term.block.map_or(0, |block| block.0));
-        let domain = domain(lowering.model, &term.region);
+        let domain = domain(lowering.model, &term.region, term.uses.iter().copied());
         let uses = term.uses.iter().map(|field| {
             let field = Literal::usize_unsuffixed(field.0);
             quote!(Use { field: #field })

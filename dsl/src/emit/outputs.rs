@@ -9,9 +9,9 @@ use super::pairs;
 use super::program::Plan;
 use crate::form::{Action, Event, Forms, Frames, FunctionalKind, PointForm, Table, Trigger, When};
 use crate::kernel::Kernels;
-use crate::lower::{Lowering, QuantityKind, Region, region_names};
-use crate::model::Reduction;
-use crate::scalar::Id;
+use crate::lower::{Lowering, QuantityKind, Region, SymbolKind, names_for, region_names};
+use crate::model::{FieldId, Reduction};
+use crate::scalar::{Id, symbols_of};
 use crate::source::SourceMap;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -86,7 +86,7 @@ fn observable(
         QuantityKind::Integral(_) => quote!(ObservableKind::Integral(&[#(#integrals),*])),
         QuantityKind::Extreme(reduction, region, values) => {
             let function = values_at_points(lowering, slots, region, values);
-            let domain = domain(model, region);
+            let domain = domain(model, region, fields_of(lowering, values));
             match reduction {
                 Reduction::Min => quote!(ObservableKind::Min(#domain, #function)),
                 _ => quote!(ObservableKind::Max(#domain, #function)),
@@ -94,7 +94,7 @@ fn observable(
         }
         QuantityKind::Side(pieces, regions, value) => {
             let edges = Region::Edges(pieces.clone());
-            let paths = region_names(model, &edges);
+            let paths = names_for(model, &edges, fields_of(lowering, &[*value]).into_iter());
             let regions = region_names(model, &Region::Cells(regions.clone()));
             let function = values_at_points(lowering, slots, &edges, &[*value]);
             quote!(ObservableKind::Side { paths: &[#(#paths),*], regions: &[#(#regions),*], function: #function })
@@ -119,11 +119,21 @@ fn observable(
             quote!(ObservableKind::PairIntegral { pair: #pair, sides: #sides, current: #current, function: #function })
         }
         QuantityKind::Force(block, pieces, field, component) => {
-            let domain = domain(model, &Region::Edges(pieces.clone()));
+            let domain = domain(model, &Region::Edges(pieces.clone()), [*field]);
             let [block, field, component] = [block.0, field.0, *component].map(Literal::usize_unsuffixed);
             quote!(ObservableKind::Force { block: #block, domain: #domain, field: #field, component: #component })
         }
     }
+}
+
+/// The fields that scalars read.
+fn fields_of(lowering: &Lowering<'_>, roots: &[Id]) -> Vec<FieldId> {
+    let symbols = symbols_of(&lowering.pool, roots).into_iter();
+    let field = |symbol| match lowering.symbols.kind(symbol) {
+        SymbolKind::Field(input) | SymbolKind::FieldRate(input) => Some(input.field),
+        _ => None,
+    };
+    symbols.filter_map(field).collect()
 }
 
 fn values_at_points(

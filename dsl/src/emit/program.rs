@@ -122,6 +122,7 @@ fn program(forms: &mut Forms<'_>, plan: &Plan, sources: &SourceMap) -> TokenStre
     let (holds, contact_pairs) = (fields::holds(forms, &slots, sources), pairs::pairs(forms, &slots));
     let pair_integrals = pairs::energies(forms, &slots, sources);
     let pair_loads = pairs::loads(forms, &slots, sources);
+    let (ties, moving) = (fields::ties(forms, sources), fields::moving(model));
     let couplings = states::couplings(forms, &slots, sources);
     let system = states::system(forms, &slots, sources);
     let (events, tables) = (outputs::events(forms, &slots), outputs::tables(forms, &slots));
@@ -143,6 +144,8 @@ fn program(forms: &mut Forms<'_>, plan: &Plan, sources: &SourceMap) -> TokenStre
             functionals: #functionals,
             blocks: &[#(#blocks),*],
             holds: #holds,
+            ties: #ties,
+            moving: #moving,
             integrals: &[#(#integrals),*],
             pairs: #contact_pairs,
             pair_integrals: #pair_integrals,
@@ -201,7 +204,7 @@ fn base_dimensions() -> [ansatz_units::Dimension; 6] {
 fn measures(forms: &Forms<'_>) -> TokenStream {
     let model = forms.lowering.model;
     let entries = forms.lowering.measures.iter().map(|region| {
-        let (name, domain) = (region_names(model, region).join(" + "), fields::domain(model, region));
+        let (name, domain) = (region_names(model, region).join(" + "), fields::domain(model, region, []));
         quote!(Measure { name: #name, domain: #domain })
     });
     quote!(&[#(#entries),*])

@@ -23,7 +23,7 @@ mod vary;
 
 use crate::diagnostic::Diagnostic;
 use crate::lower::{Lowered, Lowering, Part, Region, SymbolKind};
-use crate::model::{BlockId, FieldId, Model};
+use crate::model::{BlockId, FieldId, Model, Tie};
 use crate::scalar::Id;
 use crate::source::Span;
 
@@ -46,6 +46,8 @@ pub struct Forms<'m> {
     pub terms: Vec<Term>,
     /// Prescribed components.
     pub holds: Vec<Hold>,
+    /// Fields that follow others.
+    pub ties: Vec<TieOn>,
     /// Energies of gaps.
     pub gap_energies: Vec<GapEnergy>,
     /// Loads on contact pairs.
@@ -70,6 +72,15 @@ pub struct Forms<'m> {
     pub frames: Vec<Frames>,
     /// Tests that read a finished run.
     pub tests: Vec<RunTest>,
+}
+
+/// `tie` of two fields.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct TieOn {
+    pub tie: Tie,
+    pub region: Region,
+    pub span: Span,
 }
 
 /// `hold` of one component.
@@ -121,12 +132,13 @@ pub fn build(model: &Model) -> Result<Forms<'_>, Vec<Diagnostic>> {
         Some(settings) if problems.is_empty() => settings,
         _ => return Err(problems),
     };
-    let physics::Physics { terms, holds, gap_energies, pair_loads, couplings, .. } = physics;
+    let physics::Physics { terms, holds, ties, gap_energies, pair_loads, couplings, .. } = physics;
     Ok(Forms {
         lowering,
         settings,
         terms,
         holds,
+        ties,
         gap_energies,
         pair_loads,
         couplings,

@@ -3,18 +3,20 @@
 use super::balance::{Balances, state_slopes};
 use super::pair::{Contact, GapEnergy, PairLoad, gap_energy, pair_load};
 use super::vary::{Origin, Term, Variation, linearise};
-use super::{Builder, Coupling, Hold};
+use super::{Builder, Coupling, Hold, TieOn};
 use crate::derive;
 use crate::lower::{Lowered, Lowering, Region, SymbolKind, Value, internal, is_gradient, unsupported};
 use crate::model::{BlockId, Domain, Expr, FieldId, PairId, Piece, Shape, Sides, Statement, StatementKind};
 use crate::scalar::{Id, symbols_of};
 use crate::source::Span;
+use std::collections::BTreeSet;
 
 /// What the blocks say.
 #[derive(Default)]
 pub(super) struct Physics {
     pub(super) terms: Vec<Term>,
     pub(super) holds: Vec<Hold>,
+    pub(super) ties: Vec<TieOn>,
     pub(super) gap_energies: Vec<GapEnergy>,
     pub(super) pair_loads: Vec<PairLoad>,
     pub(super) couplings: Vec<Coupling>,
@@ -91,6 +93,12 @@ impl Physics {
             StatementKind::Load(of, with, None) => self.lumped_load(lowering, block, of, with, span),
             StatementKind::Hold(field, component, value, domain) => {
                 self.hold(lowering, *field, *component, value, domain, span)
+            }
+            &StatementKind::Tie(tie, ref domain) => {
+                let region =
+                    Region::of(domain).ok_or_else(|| internal(domain.span, "`tie` on a contact pair"))?;
+                self.ties.push(TieOn { tie, region, span });
+                Ok(())
             }
             StatementKind::Equation(left, right) => {
                 let (left_id, right_id) = (lowering.global_scalar(left)?, lowering.global_scalar(right)?);
@@ -270,6 +278,13 @@ pub(super) fn check(lowering: &Lowering<'_>, term: &Term) -> Lowered<()> {
         return Err(unsupported(
             term.span,
             "gradients and normals out of regions in statements on paths are not supported; the derivative along the path is `along(e)`",
+        ));
+    }
+    let homes: BTreeSet<_> = term.uses.iter().map(|&field| lowering.model.moving_home(field)).collect();
+    if on_edges && homes.len() > 1 {
+        let problem = "fields of a moving region and of bodies in one statement on a path are not supported";
+        return Err(Box::new(
+            unsupported(term.span, problem).help("`tie` the fields of the region to those of the bodies"),
         ));
     }
     let energy_of_quantity = term.block.is_some()

@@ -24,7 +24,7 @@ use crate::model::{Expr, FieldId, LetId, LocalId, Model, PairId, RegionId};
 use crate::scalar::{Id, Pool};
 use crate::source::Span;
 
-pub use names::{input_name, piece_name, region_names, symbol_name};
+pub use names::{input_name, names_for, piece_name, region_names, symbol_name};
 pub use quantity::{Part, Quantity, QuantityKind, Region};
 pub use reduce::RunValue;
 pub(crate) use side::is_gradient;

@@ -65,6 +65,22 @@ pub fn region_names(model: &Model, region: &Region) -> Vec<String> {
     }
 }
 
+/// Names of a domain on which fields are seen: paths around a moving region have its name before them where they are seen with its fields.
+pub fn names_for(
+    model: &Model,
+    region: &Region,
+    mut fields: impl Iterator<Item = crate::model::FieldId>,
+) -> Vec<String> {
+    let names = region_names(model, region);
+    match (region, fields.find_map(|field| model.moving_home(field))) {
+        (Region::Edges(_), Some(home)) => {
+            let home = &model.geometry.regions[home.0].name;
+            names.into_iter().map(|name| format!("{home}/{name}")).collect()
+        }
+        _ => names,
+    }
+}
+
 /// Name of one piece of a domain.
 pub fn piece_name(model: &Model, piece: Piece) -> String {
     match piece {

@@ -41,6 +41,8 @@ pub(crate) fn assemble(mut draft: Draft) -> Mesh {
         regions: draft.regions,
         paths: Vec::new(),
         corners: draft.corners.into_iter().map(node).collect(),
+        body_cells: draft.cells.len(),
+        links: Vec::new(),
     };
     mesh.vertex_count = mesh.nodes.len();
     let cell_edges = add_middles(&mut mesh);
@@ -50,7 +52,8 @@ pub(crate) fn assemble(mut draft: Draft) -> Mesh {
             .zip(&chain.middles)
             .map(|(edge, &middle)| path_edge(&mut mesh, &cell_edges, edge.map(node), middle));
         let edges = edges.collect();
-        mesh.paths.push(MeshPath { path: chain.path.clone(), label: chain.label.clone(), edges });
+        let (path, label) = (chain.path.clone(), chain.label.clone());
+        mesh.paths.push(MeshPath { path, label, seen_from: None, edges });
     }
     straighten(&mut mesh);
     mesh

@@ -38,6 +38,13 @@ pub enum MeshError {
         /// Where they meet.
         at: Point,
     },
+    /// The surfaces around a moving region run into each other.
+    Overlap {
+        /// The region.
+        region: String,
+        /// Where they meet.
+        at: Point,
+    },
     /// A cell is worse than accepted after all attempts at refining.
     Quality {
         /// Region of the cell.
@@ -78,6 +85,11 @@ impl fmt::Display for MeshError {
                 f,
                 "boundaries near ({x:.4}, {y:.4}) are too close to each other to be meshed; give a smaller size there, or \
                  move them apart"
+            ),
+            E::Overlap { region, at: [x, y] } => write!(
+                f,
+                "the surfaces around `{region}` run into each other near ({x:.4}, {y:.4}); what keeps them apart is too weak, or the edges there are \
+                 too long"
             ),
             E::Quality { region, at: [x, y], found, wanted } => write!(
                 f,

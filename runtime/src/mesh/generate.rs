@@ -6,7 +6,7 @@ use super::quality::cell_quality;
 use super::sizing::SizeField;
 use super::triangulate::{Triangles, triangulate};
 use super::{Mesh, MeshError, MeshSizing};
-use ansatz_geometry::{Boundary, Geometry, Point, point};
+use ansatz_geometry::{Boundary, Geometry, Point, Region, point};
 
 /// Meshes made, each finer than the one before where that one was too coarse or of too low quality.
 const ATTEMPTS: usize = 8;
@@ -17,6 +17,18 @@ impl Mesh {
     /// # Errors
     /// A fault of the geometry or the sizes, or a mesh that stays below the wanted quality.
     pub fn generate(geometry: &Geometry, sizing: &MeshSizing) -> Result<Mesh, MeshError> {
+        Self::generate_bodies(geometry, sizing, &[])
+    }
+
+    /// Meshes all regions but those named, which a [`Follower`](super::Follower) fills.
+    ///
+    /// # Errors
+    /// As [`Mesh::generate`].
+    pub fn generate_bodies(
+        geometry: &Geometry,
+        sizing: &MeshSizing,
+        without: &[&str],
+    ) -> Result<Mesh, MeshError> {
         let faults = geometry.check();
         if !faults.is_empty() {
             return Err(MeshError::Geometry(faults));
@@ -25,9 +37,14 @@ impl Mesh {
             (0..geometry.regions.len()).map(|region| geometry.boundary(region)).collect();
         let boundaries = boundaries.map_err(MeshError::Geometry)?;
         let mut field = SizeField::new(geometry, &boundaries, sizing)?;
+        let stays = |region: &Region| !without.contains(&region.name.as_str());
+        let regions: Vec<Region> = geometry.regions.iter().filter(|region| stays(region)).cloned().collect();
+        let around = geometry.regions.iter().zip(&boundaries).filter(|(region, _)| stays(region));
+        let around: Vec<Boundary> = around.map(|(_, boundary)| boundary.clone()).collect();
+        let bodies = Geometry { regions, ..geometry.clone() };
         let mut attempts = 1;
         loop {
-            match attempt(geometry, &boundaries, &field, sizing.quality) {
+            match attempt(&bodies, &around, &field, sizing.quality) {
                 Ok(mesh) => return Ok(mesh),
                 Err(Shortcoming { error, finer }) if finer.is_empty() || attempts == ATTEMPTS => {
                     return Err(error);

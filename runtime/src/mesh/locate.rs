@@ -3,6 +3,7 @@
 use super::Mesh;
 use super::quality::{jacobian, position};
 use ansatz_geometry::{Point, point};
+use std::ops::Range;
 
 /// Newton steps to invert a cell's map; it converges quadratically and cells are only slightly curved.
 const STEPS: usize = 12;
@@ -28,15 +29,15 @@ impl Mesh {
 }
 
 impl<'m> Locator<'m> {
-    /// Sorts the cells of a mesh into a grid with about as many squares as cells.
-    pub fn new(mesh: &'m Mesh) -> Self {
+    /// Sorts some cells of a mesh into a grid with about as many squares as cells.
+    pub fn new(mesh: &'m Mesh, among: Range<usize>) -> Self {
         let [low, high] = point::bounds(&mesh.nodes);
         let (width, height) = (high[0] - low[0], high[1] - low[1]);
         let side = (width * height / mesh.cells.len().max(1) as f64).sqrt();
         let count = |length: f64| ((length / side) as usize).saturating_add(1).min(mesh.cells.len() + 1);
         let (columns, rows) = (count(width), count(height));
         let mut locator = Locator { mesh, low, side, columns, rows, cells: vec![Vec::new(); columns * rows] };
-        for cell in 0..mesh.cells.len() {
+        for cell in among {
             let [low, high] = cell_bounds(&mesh.cell_nodes(cell));
             let ([first, bottom], [last, top]) = (locator.square(low), locator.square(high));
             for row in bottom..=top {

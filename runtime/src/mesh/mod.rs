@@ -10,6 +10,7 @@
 mod assemble;
 mod delaunay;
 mod error;
+mod follow;
 mod front;
 mod generate;
 mod hilbert;
@@ -25,6 +26,7 @@ mod triangles;
 mod triangulate;
 
 pub use error::MeshError;
+pub use follow::Follower;
 pub use locate::Locator;
 pub use quality::{QualityStatistics, cell_quality};
 pub use sizing::{MeshSizing, Place, SizeRule};
@@ -50,10 +52,14 @@ pub struct Mesh {
     pub cell_region: Vec<u16>,
     /// Region names.
     pub regions: Vec<String>,
-    /// Each segment of each path in the order of the geometry, then the pieces of the `axis` from below.
+    /// Each segment of each path in the order of the geometry, then the pieces of the `axis` from below; then those of each moving region.
     pub paths: Vec<MeshPath>,
     /// Node at each [vertex](ansatz_geometry::Vertices) of the geometry.
     pub corners: Vec<u32>,
+    /// How many of the cells are those of bodies, in their reference shape; those of [moving regions](Follower), in their present one, follow.
+    pub body_cells: usize,
+    /// Nodes of moving regions on the surface of bodies, ascending, each with the body's node.
+    pub links: Vec<[u32; 2]>,
 }
 
 /// The edges along one segment of a path.
@@ -63,6 +69,8 @@ pub struct MeshPath {
     pub path: String,
     /// Label of the segment.
     pub label: Option<String>,
+    /// The moving region whose nodes the edges have; none for those of bodies.
+    pub seen_from: Option<String>,
     /// Edges in the direction of the path, each starting where the one before it ends.
     pub edges: Vec<PathEdge>,
 }
@@ -88,13 +96,40 @@ pub struct CellEdge {
 }
 
 impl Mesh {
-    /// Edges of `path`, `path.label` or `axis` in the direction of the path; empty where there is no such path.
+    /// Edges of `path`, `path.label` or `axis` in the direction of the path, those of a moving region as `region/path`; empty where there is no
+    /// such path.
     pub fn path_edges(&self, name: &str) -> impl Iterator<Item = &PathEdge> {
+        let (seen_from, name) =
+            name.split_once('/').map_or((None, name), |(region, name)| (Some(region), name));
         let (path, label) = name.split_once('.').map_or((name, None), |(path, label)| (path, Some(label)));
         let named = self.paths.iter().filter(move |segment| {
-            segment.path == path && (label.is_none() || segment.label.as_deref() == label)
+            segment.path == path
+                && segment.seen_from.as_deref() == seen_from
+                && (label.is_none() || segment.label.as_deref() == label)
         });
         named.flat_map(|segment| &segment.edges)
+    }
+
+    /// The bodies alone, without moving regions.
+    pub fn bodies(&self) -> Mesh {
+        let regions = self.cell_region[..self.body_cells].last().map_or(0, |&last| usize::from(last) + 1);
+        let of_bodies = |path: &&MeshPath| path.seen_from.is_none();
+        let paths: Vec<MeshPath> = self.paths.iter().filter(of_bodies).cloned().collect();
+        let nodes = self.links.first().map_or(self.nodes.len(), |_| {
+            let moving = self.cells[self.body_cells..].iter().flatten();
+            moving.min().map_or(self.nodes.len(), |&first| first as usize)
+        });
+        Mesh {
+            nodes: self.nodes[..nodes].to_vec(),
+            vertex_count: self.vertex_count,
+            cells: self.cells[..self.body_cells].to_vec(),
+            cell_region: self.cell_region[..self.body_cells].to_vec(),
+            regions: self.regions[..regions].to_vec(),
+            paths,
+            corners: self.corners.clone(),
+            body_cells: self.body_cells,
+            links: Vec::new(),
+        }
     }
 
     /// Cells of a region; empty where there is no such region.

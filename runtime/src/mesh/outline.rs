@@ -148,7 +148,7 @@ fn spans(geometry: &Geometry, boundaries: &[Boundary], vertices: &Vertices) -> V
 }
 
 /// Parameters 0 = s_0 < ... < s_n = 1 of the division of a curve, or the number of edges if there are too many.
-fn cuts(curve: &Curve, field: &SizeField<'_>) -> Result<Vec<f64>, f64> {
+pub(crate) fn cuts(curve: &Curve, field: &SizeField<'_>) -> Result<Vec<f64>, f64> {
     let sample = |count: usize| -> Vec<f64> {
         (0..=count).map(|k| curve.length() / field.at(curve.point(k as f64 / count as f64))).collect()
     };

@@ -49,6 +49,16 @@ impl Default for MeshSizing {
     }
 }
 
+impl MeshSizing {
+    /// Upper bound on the size of cells in a region, away from everything that asks for smaller ones.
+    pub(crate) fn largest_in(&self, region: &str, geometry: &Geometry) -> f64 {
+        let [low, high] = geometry.bounds();
+        let here = |place: &Place| *place == Place::Everywhere || *place == Place::Region(region.into());
+        let rules = self.rules.iter().filter(|rule| rule.on.iter().any(here));
+        rules.map(|rule| rule.size).fold(COARSEST * point::distance(low, high), f64::min)
+    }
+}
+
 /// Part of the diagonal that bounds sizes where no rule applies everywhere.
 const COARSEST: f64 = 0.1;
 
@@ -98,6 +108,19 @@ impl<'a> SizeField<'a> {
         }
         sources.sort_by(|a, b| a.0.total_cmp(&b.0));
         Ok(SizeField { sources, slope: sizing.growth - 1.0 })
+    }
+
+    /// Sizes at points, and everywhere at most `largest`.
+    pub(crate) fn around(
+        points: impl IntoIterator<Item = (f64, Point)>,
+        largest: f64,
+        growth: f64,
+    ) -> SizeField<'static> {
+        let mut sources: Vec<(f64, Shape<'static>)> =
+            points.into_iter().map(|(size, at)| (size, Shape::Point(at))).collect();
+        sources.push((largest, Shape::Everywhere));
+        sources.sort_by(|a, b| a.0.total_cmp(&b.0));
+        SizeField { sources, slope: growth - 1.0 }
     }
 
     /// Asks for `size` around a point.

@@ -213,7 +213,7 @@ fn cells_are_grouped_by_region_and_nodes_are_local() {
 #[test]
 fn located_points_map_back() {
     let mesh = dry_mesh(2.0);
-    let locator = Locator::new(&mesh);
+    let locator = Locator::new(&mesh, 0..mesh.cells.len());
     for cell in (0..mesh.cells.len()).step_by(7) {
         let at = [0.2, 0.3];
         let p = position(&mesh.cell_nodes(cell), at);
@@ -355,4 +355,57 @@ fn an_inverted_curved_cell_is_never_left() {
     let geometry = Geometry { paths: vec![cusp], regions: vec![region], axisymmetric: false };
     let mesh = Mesh::generate(&geometry, &MeshSizing { quality: 1e-4, ..everywhere(0.2) }).expect("accepted");
     assert!((0..mesh.cells.len()).all(|cell| least_determinant(&mesh.cell_nodes(cell)) > 0.0));
+}
+
+/// Two plates of width 4 with a channel of height 1 between them.
+fn channel_between_plates() -> Geometry {
+    let plate = |name: &str, low: f64, high: f64| {
+        let path = PathBuilder::from(name, [0.0, low]).line(Some("low"), [4.0, low]).line(None, [4.0, high]);
+        path.line(Some("high"), [0.0, high]).line(None, [0.0, low]).build().expect("lines")
+    };
+    let end =
+        |name: &str, x: f64| PathBuilder::from(name, [x, 0.0]).line(None, [x, 1.0]).build().expect("a line");
+    let paths =
+        vec![plate("floor", -1.0, 0.0), plate("ceiling", 1.0, 2.0), end("inlet", 0.0), end("outlet", 4.0)];
+    let channel = ["inlet", "outlet"].map(LoopPart::path).into_iter();
+    let channel = channel.chain([LoopPart::segment("floor", "high"), LoopPart::segment("ceiling", "low")]);
+    let regions = vec![
+        Region::new("below", [LoopPart::path("floor")]),
+        Region::new("above", [LoopPart::path("ceiling")]),
+        Region::new("channel", channel),
+    ];
+    Geometry { paths, regions, axisymmetric: false }
+}
+
+/// Mesh of the channel with its upper wall displaced by `u(x)`.
+fn followed(u: impl Fn(f64) -> f64) -> Result<(Mesh, Vec<Point>), MeshError> {
+    let (geometry, sizing) = (channel_between_plates(), everywhere(0.5));
+    let mut mesh = Mesh::generate_bodies(&geometry, &sizing, &["channel"])?;
+    let moved = |&[x, y]: &Point| [x, if y > 0.0 { y * (1.0 + u(x)) } else { y }];
+    let positions: Vec<Point> = mesh.nodes.iter().map(moved).collect();
+    Follower::new(&geometry, 2, &sizing)?.attach(&mut mesh, &positions)?;
+    Ok((mesh, positions))
+}
+
+#[test]
+fn a_region_between_bodies_takes_the_shape_that_they_leave_it() {
+    let (mesh, positions) = followed(|x| 0.1 * x).expect("there is room");
+    assert_conforming(&mesh);
+    assert!((mesh.region_area("channel") - 4.8).abs() < 1e-12, "{}", mesh.region_area("channel"));
+    assert!((mesh.region_area("above") - 4.0).abs() < 1e-12, "bodies keep their reference shape");
+    assert!(!mesh.links.is_empty());
+    for [moving, body] in &mesh.links {
+        assert_eq!(mesh.nodes[*moving as usize], positions[*body as usize]);
+    }
+    let wall = |name: &str| mesh.path_edges(name).count();
+    assert!(wall("ceiling.low") > 0 && wall("ceiling.low") == wall("channel/ceiling.low"));
+    assert!(mesh.path_edges("channel/outlet").all(|edge| edge.left.is_some() != edge.right.is_some()));
+    let bodies = mesh.bodies();
+    assert_eq!((bodies.cells.len(), bodies.regions.len()), (mesh.body_cells, 2));
+}
+
+#[test]
+fn bodies_that_run_into_each_other_leave_no_region() {
+    let error = followed(|x| -0.4 * x).expect_err("they cross").to_string();
+    assert!(error.contains("`channel`"), "{error}");
 }

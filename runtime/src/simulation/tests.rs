@@ -129,6 +129,8 @@ const fn program(solve: fn(&[f64]) -> Solve) -> Program {
         }],
         functionals: &[Functional { name: "Z", unit: "1", kind: FunctionalKind::Integral(&[INTEGRAL_OF_U]) }],
         blocks: &["decay"],
+        ties: &[],
+        moving: &[],
         holds: &[],
         integrals: &[
             Integral { value: None, residual: decay, tangent: Some(decay_tangent), ..INTEGRAL_OF_U },

@@ -6,13 +6,11 @@ use super::newton::StageProblem;
 use super::observables::ObservableOn;
 use super::states::Stage as StateStage;
 use super::terms::At;
+use super::ties::Tied;
 use super::unknowns::NONE;
 use crate::error::Cause;
 use crate::solve::border::Products;
 use crate::solve::dense::squares;
-
-/// Roundings that add up in an assembled residual.
-const ROUNDINGS: f64 = 8.0;
 
 /// The linearised balance at one point: residual, matrix values (kept in the system) and what functionals add to the matrix.
 #[derive(Clone, Debug, Default)]
@@ -98,6 +96,7 @@ impl System {
         let layout = self.program.layout;
         self.g[layout.time] = problem.time;
         problem.rates(y, rates, 0..self.unknowns.states);
+        self.follow(problem, y, rates);
         self.evaluate_functionals(y, rates);
         problem.rates(y, rates, self.unknowns.functionals..self.unknowns.length);
         for k in 0..self.functionals.len() {
@@ -112,6 +111,14 @@ impl System {
         y[states.clone()].copy_from_slice(&self.g[layout.states[0]..layout.states[1]]);
         problem.rates(y, rates, states);
         Ok(())
+    }
+
+    /// Gives tied unknowns the values, or rates, of their partners.
+    fn follow(&self, problem: &StageProblem<'_>, y: &mut [f64], rates: &mut [f64]) {
+        for &Tied { unknown, partner, rate } in &self.ties {
+            y[unknown] = if rate { rates[partner] } else { y[partner] };
+            problem.rates(y, rates, unknown..unknown + 1);
+        }
     }
 
     /// Coefficient of each coupling at the present globals.
@@ -151,42 +158,11 @@ impl System {
                 }
             }
         }
+        self.hand_on(&mut residual);
         if block.is_none() {
             self.take_ramp_away(&mut residual);
         }
         residual
-    }
-
-    /// Size of the element forces that balance each other: the scale against which a residual is small.
-    pub(super) fn force_scale(&mut self, y: &[f64], rates: &[f64], alpha: f64) -> f64 {
-        let magnitude = self.magnitude(y, rates, alpha);
-        norm(&self.restrict(&magnitude))
-    }
-
-    /// Sum of the magnitudes of what each element adds to the residual of each unknown.
-    pub(super) fn magnitude(&mut self, y: &[f64], rates: &[f64], alpha: f64) -> Vec<f64> {
-        let mut magnitude = vec![0.0; self.unknowns.length];
-        let at = At { y, rates, g: &self.g, alpha };
-        self.terms.iter_mut().for_each(|t| t.add_magnitude(at, &mut magnitude));
-        magnitude
-    }
-
-    /// Residual that rounding alone may leave: the diagonal of the last tangent times the rounding of the unknowns, and of the positions that
-    /// displacements (fields measured in the unit of length) add to.
-    pub(super) fn rounding(&self, y: &[f64]) -> f64 {
-        let length = self.program.base_units[0];
-        let mut sum = 0.0;
-        for (field, numbers) in self.program.fields.iter().zip(&self.unknowns.fields) {
-            let offset = if field.unit == length { self.cell_size } else { 0.0 };
-            let range = numbers.first..numbers.first + numbers.count();
-            for (value, &equation) in y[range.clone()].iter().zip(&self.equations[range]) {
-                if equation != NONE {
-                    let diagonal = self.values[self.diagonal[equation as usize]];
-                    sum += (diagonal * (value.abs() + offset)).powi(2);
-                }
-            }
-        }
-        ROUNDINGS * f64::EPSILON * sum.sqrt()
     }
 
     /// Linearises the balance at a settled point; matrix values go to `self.values`.
@@ -220,6 +196,8 @@ impl System {
                 functional.add_curvature(at, *c, &mut self.values, &mut unused);
             }
         }
+        self.multiply_columns_of_rates(alpha);
+        self.hand_on(&mut residual);
         self.take_ramp_away(&mut residual);
         let products = self.outer_products(y, rates, alpha);
         Balance { residual: self.restrict(&residual), products }
@@ -237,17 +215,19 @@ impl System {
         let of_pairs = self.pairs.iter().any(PairOn::reads_globals);
         let read_by_integrals =
             of_pairs || self.terms.iter().any(|term| term.integral.global_tangent.is_some());
-        let squares = if read_by_integrals { None } else { squares(count, &mixing) };
+        let plain = !read_by_integrals && self.ties.is_empty();
+        let squares = if plain { squares(count, &mixing) } else { None };
         if let Some(squares) = squares {
             let columns = squares.iter().flat_map(|(_, square)| self.blend_of_gradients(square)).collect();
             return OuterProducts::Weighted { columns, weights: squares.iter().map(|(w, _)| *w).collect() };
         }
         let mut columns = vec![vec![0.0; self.unknowns.length]; count];
         self.add_global_tangents(y, rates, alpha, &of_states, &mut columns);
+        columns.iter_mut().for_each(|column| self.hand_on(column));
         let integrals = columns.iter().flat_map(|column| self.restrict(column));
         let loads = mixing.chunks(count.max(1)).flat_map(|column| self.blend_of_gradients(column));
         let b = integrals.zip(loads).map(|(a, b)| a + b).collect();
-        let c = self.functionals.iter().flat_map(|f| self.restrict(&f.gradient)).collect();
+        let c = self.functionals.iter().flat_map(|f| self.restrict_columns(&f.gradient, alpha)).collect();
         OuterProducts::General { b, c }
     }
 
@@ -274,6 +254,7 @@ impl System {
         for (functional, factor) in self.functionals.iter().zip(factors) {
             add(&mut blend, *factor, &functional.gradient);
         }
+        self.hand_on(&mut blend);
         self.restrict(&blend)
     }
 
@@ -310,9 +291,31 @@ impl System {
         }
     }
 
+    /// Adds what acts on tied unknowns to what acts on their partners.
+    pub(super) fn hand_on(&self, residual: &mut [f64]) {
+        for tied in &self.ties {
+            residual[tied.partner] += std::mem::take(&mut residual[tied.unknown]);
+        }
+    }
+
     /// Entries of a vector over unknowns that have an equation, in the equations' order.
     pub(super) fn restrict(&self, full: &[f64]) -> Vec<f64> {
         self.free.iter().map(|&u| full[u as usize]).collect()
+    }
+
+    /// Entries of a derivative by unknowns, likewise; tied unknowns count for their partners, `alpha` times where they are rates.
+    fn restrict_columns(&self, full: &[f64], alpha: f64) -> Vec<f64> {
+        let mut columns = full.to_vec();
+        for tied in &self.ties {
+            columns[tied.partner] += columns[tied.unknown] * if tied.rate { alpha } else { 1.0 };
+        }
+        self.restrict(&columns)
+    }
+
+    /// Adds the second matrix, of the columns of rates, to the first.
+    fn multiply_columns_of_rates(&mut self, alpha: f64) {
+        let (first, second) = self.values.split_at_mut(self.pattern.entries() + 1);
+        first.iter_mut().zip(second).for_each(|(value, of_rate)| *value += alpha * *of_rate);
     }
 
     /// Name of an equation's unknown and its place, such as `u.z at (1.53, 0.02)`.

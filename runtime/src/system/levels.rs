@@ -53,7 +53,7 @@ impl System {
             if !levels.is_empty() {
                 let held = self.held.iter().map(|h| h.unknown);
                 let without = held.chain(levels.iter().map(|level| level.left_out));
-                (self.equations, self.free) = number_equations(&self.unknowns, without);
+                (self.equations, self.free) = number_equations(&self.unknowns, without, &self.ties);
                 self.rebuild_pattern(y)?;
             }
             self.levels = Some(levels);

@@ -7,6 +7,7 @@
 
 mod balance;
 mod contact;
+mod convergence;
 mod elements;
 mod frames;
 mod functionals;
@@ -23,6 +24,8 @@ mod sides;
 mod start;
 mod states;
 mod terms;
+mod ties;
+mod transfer;
 mod unknowns;
 
 pub use balance::Balance;
@@ -32,11 +35,12 @@ pub use place::Place;
 pub use point::{Sampler, node_places};
 pub use probe::Probe;
 pub use terms::At;
+pub use transfer::Transfer;
 pub use unknowns::{FieldNumbers, Unknowns, domain_nodes, path_edges, region_cells};
 
 use crate::error::Error;
 use crate::generated::{Program, Solve};
-use crate::mesh::Mesh;
+use crate::mesh::{Follower, Mesh};
 use crate::solve::border::BorderedSolver;
 use crate::solve::sparse::{MatrixKind, SparsePattern};
 use crate::time::control::with_step_bounds;
@@ -48,6 +52,7 @@ use ramp::Ramp;
 use start::HeldUnknown;
 use states::StateSolver;
 use terms::Term;
+use ties::Tied;
 use unknowns::NONE;
 
 /// A compiled model on a mesh.
@@ -56,6 +61,8 @@ pub struct System {
     pub program: &'static Program,
     /// The mesh.
     pub mesh: Mesh,
+    /// What meshes the moving regions, in the program's order.
+    followers: Vec<Follower>,
     /// Numbering of y.
     pub unknowns: Unknowns,
     /// Settings of the solution.
@@ -63,7 +70,9 @@ pub struct System {
     /// Globals as of the last evaluation.
     pub g: Vec<f64>,
     held: Vec<HeldUnknown>,
-    /// Equation of each field unknown, or [`NONE`] where it is held.
+    /// Unknowns that follow others.
+    ties: Vec<Tied>,
+    /// Equation of each field unknown, or [`NONE`] where it is held; that of its partner where it is tied.
     equations: Vec<u32>,
     /// Unknown of each equation.
     free: Vec<u32>,
@@ -75,12 +84,13 @@ pub struct System {
     kind: MatrixKind,
     pattern: SparsePattern,
     solver: BorderedSolver,
-    /// Matrix values and one spare entry for what belongs to held unknowns.
+    /// Matrix values and one spare entry for what belongs to held unknowns; behind them, where there are ties to rates, the same again for the
+    /// columns that d rate / d value multiplies.
     values: Vec<f64>,
     /// The factors of the last stage, if they may serve the next one.
     factored: Option<newton::Factored>,
-    /// Size of the forces that balanced each other in the last stage; zero before.
-    forces: f64,
+    /// Size of the forces that balanced each other in each field in the last stage; none before.
+    forces: Vec<f64>,
     /// Place of each equation's diagonal entry in the values.
     diagonal: Vec<usize>,
     /// Typical edge length of a cell.
@@ -100,10 +110,21 @@ pub struct System {
 impl System {
     /// Puts a program with these parameters on a mesh.
     pub fn new(program: &'static Program, parameters: &[f64], mesh: Mesh) -> Result<Self, Error> {
+        Self::following(program, parameters, mesh, Vec::new())
+    }
+
+    /// The same on a mesh whose moving regions `followers` mesh anew.
+    pub fn following(
+        program: &'static Program,
+        parameters: &[f64],
+        mesh: Mesh,
+        followers: Vec<Follower>,
+    ) -> Result<Self, Error> {
         let unknowns = Unknowns::new(program, &mesh)?;
         let g = globals::constants(program, parameters, &mesh)?;
         let held = start::held_unknowns(program, &mesh, &unknowns)?;
-        let (equations, free) = start::number_equations(&unknowns, held.iter().map(|h| h.unknown));
+        let ties = ties::tied_unknowns(program, &mesh, &unknowns)?;
+        let (equations, free) = start::number_equations(&unknowns, held.iter().map(|h| h.unknown), &ties);
         let terms: Vec<Term> =
             program.integrals.iter().map(|i| Term::new(i, &mesh, &unknowns)).collect::<Result<_, _>>()?;
         let functionals: Vec<FunctionalOn> = program
@@ -114,7 +135,8 @@ impl System {
         let pairs = contact::prepare(program, &mesh, &g)?;
         let observables = observables::prepare(program, &mesh, &unknowns, &g)?;
         let symmetric = in_the_matrix(&terms, &functionals).all(|t| t.integral.symmetric)
-            && !pairs.iter().any(PairOn::is_loaded);
+            && !pairs.iter().any(PairOn::is_loaded)
+            && ties.is_empty();
         let kind = if symmetric { MatrixKind::Symmetric } else { MatrixKind::Unsymmetric };
         let pattern = SparsePattern::from_elements(free.len(), kind, []);
         let solver = analyse(&pattern)?;
@@ -131,9 +153,11 @@ impl System {
             program,
             settings,
             mesh,
+            followers,
             unknowns,
             g,
             held,
+            ties,
             equations,
             free,
             terms,
@@ -147,7 +171,7 @@ impl System {
             values: Vec::new(),
             diagonal: Vec::new(),
             factored: None,
-            forces: 0.0,
+            forces: Vec::new(),
             cell_size,
             indefinite: false,
             stable_pivots: None,
@@ -192,14 +216,17 @@ impl System {
         self.pattern =
             SparsePattern::from_elements(self.free.len(), self.kind, groups.iter().map(Vec::as_slice));
         self.solver = analyse(&self.pattern)?;
-        self.values = vec![0.0; self.pattern.entries() + 1];
+        let of_rates = self.ties.iter().any(|tied| tied.rate);
+        self.values = vec![0.0; (self.pattern.entries() + 1) * if of_rates { 2 } else { 1 }];
         self.factored = None;
         let diagonal = (0..self.free.len() as u32).filter_map(|i| self.pattern.position(i, i));
         self.diagonal = diagonal.collect();
+        let follows: Vec<usize> =
+            self.ties.iter().filter(|tied| tied.rate).map(|tied| tied.unknown).collect();
         let of_functionals = self.functionals.iter_mut().flat_map(|f| f.terms_mut());
         for term in self.terms.iter_mut().chain(of_functionals) {
             if term.integral.tangent.is_some() {
-                term.locate(&self.pattern, &self.equations);
+                term.locate(&self.pattern, &self.equations, &follows);
             }
         }
         Ok(())

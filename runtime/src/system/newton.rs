@@ -67,8 +67,8 @@ pub(super) struct Factored {
 /// How far a stage is.
 struct Progress {
     current: Iterate,
-    /// Size of the forces that balance; a residual is small against it. That of the last stage until a second tangent is needed.
-    scale: f64,
+    /// Size of the forces that balance in each field; a residual is small against it. That of the last stage until a second tangent is needed.
+    scales: Vec<f64>,
     /// The last step made the residual so much smaller that the same factors will do again.
     keep_factors: bool,
     /// The last new tangent made the residual much smaller.
@@ -112,7 +112,7 @@ impl System {
         let usable = self.factored.filter(|f| (f.alpha - problem.alpha).abs() <= 1e-9 * f.alpha);
         Progress {
             current,
-            scale: self.forces,
+            scales: self.forces.clone(),
             keep_factors: usable.is_some(),
             converging: false,
             negative_pivots: usable.map_or(0, |f| f.negative_pivots),
@@ -122,10 +122,10 @@ impl System {
 
     /// Keeps what the next stages need to know of a solved one; its report.
     fn remember(&mut self, problem: &StageProblem<'_>, progress: &Progress) -> NewtonReport {
-        let &Progress { negative_pivots, scale, report, .. } = progress;
+        let &Progress { negative_pivots, report, .. } = progress;
         self.factored =
             (report.iterations <= 1).then_some(Factored { alpha: problem.alpha, negative_pivots });
-        self.forces = scale;
+        self.forces.clone_from(&progress.scales);
         self.stable_pivots.get_or_insert(negative_pivots);
         NewtonReport { unstable_modes: self.unstable_modes(negative_pivots), ..report }
     }
@@ -150,9 +150,9 @@ impl System {
         let contraction = norm(&progress.current.residual) / before;
         progress.keep_factors = contraction < CONTRACTION;
         progress.converging = contraction < CONVERGING;
-        if progress.scale == 0.0 || progress.report.iterations > 1 {
+        if progress.scales.is_empty() || progress.report.iterations > 1 {
             let Iterate { y, rates, .. } = &progress.current;
-            progress.scale = self.force_scale(y, rates, problem.alpha);
+            progress.scales = self.force_scales(y, rates, problem.alpha);
         }
         Ok(self.converged(progress))
     }
@@ -177,9 +177,9 @@ impl System {
     }
 
     fn converged(&self, progress: &mut Progress) -> bool {
-        let size = norm(&progress.current.residual);
-        progress.report.residual = if progress.scale > 0.0 { size / progress.scale } else { size };
-        size <= (self.settings.newton_tolerance * progress.scale).max(self.rounding(&progress.current.y))
+        let Progress { current, scales, report, .. } = progress;
+        report.residual = self.relative_size(&current.residual, scales);
+        self.is_small(&current.residual, scales, &current.y)
     }
 
     /// Newton direction at the current iterate.

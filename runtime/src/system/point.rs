@@ -106,7 +106,9 @@ const MISSED: f64 = 0.05;
 pub fn locate(mesh: &Mesh, domain: Domain, x: [f64; 2]) -> Result<Place, Error> {
     let outside = |of: &str| Error::Model(format!("the point ({}, {}) lies {of}", x[0], x[1]));
     let Domain::Edges(paths) = domain else {
-        let (cell, local) = Locator::new(mesh).locate(x).ok_or_else(|| outside("outside the mesh"))?;
+        let cells = if moves(mesh, domain) { mesh.body_cells..mesh.cells.len() } else { 0..mesh.body_cells };
+        let found = Locator::new(mesh, cells).locate(x);
+        let (cell, local) = found.ok_or_else(|| outside("outside the mesh"))?;
         return Ok(Place::in_cell(mesh, cell, local));
     };
     let mut nearest: Option<(f64, [u32; 3], f64)> = None;
@@ -122,6 +124,12 @@ pub fn locate(mesh: &Mesh, domain: Domain, x: [f64; 2]) -> Result<Place, Error> 
         .filter(|(missed, ..)| *missed < MISSED)
         .ok_or_else(|| outside(&format!("beside `{}`", paths.join(", "))))?;
     Ok(Place::on_edge(mesh, edge, s))
+}
+
+/// Whether the cells of a domain are those of a moving region.
+fn moves(mesh: &Mesh, domain: Domain) -> bool {
+    let Domain::Cells(regions) = domain else { return false };
+    regions.iter().any(|region| mesh.region_cells(region).start >= mesh.body_cells)
 }
 
 /// Distance of a point from an edge as a part of the edge's length, and the parameter of the closest point: Gauss-Newton from the chord.

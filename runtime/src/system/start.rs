@@ -1,6 +1,7 @@
 //! Held unknowns, the numbering of equations, and consistent values at the start.
 
 use super::System;
+use super::ties::{Tied, share_equations};
 use super::unknowns::{NONE, Unknowns, domain_nodes};
 use crate::error::{Cause, Error, SolveError};
 use crate::generated::{Program, Start};
@@ -49,13 +50,15 @@ fn axis_nodes(mesh: &Mesh) -> Vec<u32> {
     (0..mesh.nodes.len() as u32).filter(on_axis).collect()
 }
 
-/// Equation of each unknown (or [`NONE`], for those in `without`) and unknown of each equation.
+/// Equation of each unknown (or [`NONE`], for those in `without`; that of its partner for tied ones) and unknown of each equation.
 pub fn number_equations(
     unknowns: &Unknowns,
     without: impl IntoIterator<Item = usize>,
+    ties: &[Tied],
 ) -> (Vec<u32>, Vec<u32>) {
     let mut equations = vec![0; unknowns.states];
     without.into_iter().for_each(|unknown| equations[unknown] = NONE);
+    ties.iter().for_each(|tied| equations[tied.unknown] = NONE);
     let mut free = Vec::new();
     for (unknown, equation) in equations.iter_mut().enumerate() {
         if *equation != NONE {
@@ -63,6 +66,7 @@ pub fn number_equations(
             free.push(unknown as u32);
         }
     }
+    share_equations(ties, &mut equations);
     (equations, free)
 }
 
@@ -70,7 +74,7 @@ impl System {
     /// Consistent values of all unknowns at the start: fields and fixed states as the model says, functionals evaluated, the other states
     /// from the equations without time derivatives.
     pub fn start(&mut self) -> Result<Vec<f64>, Error> {
-        (self.factored, self.stable_pivots, self.forces, self.stabiliser) = (None, None, 0.0, 0);
+        (self.factored, self.stable_pivots, self.forces, self.stabiliser) = (None, None, Vec::new(), 0);
         let time = self.settings.time.map_or(0.0, |(start, _)| start);
         self.g[self.program.layout.time] = time;
         let mut y = vec![0.0; self.unknowns.length];

@@ -44,8 +44,9 @@ impl Term {
         Ok(Self { integral, elements, positions: Vec::new(), mirrored: Vec::new(), gathered, out })
     }
 
-    /// Looks up where the tangent goes; entries of held unknowns go to the spare last value.
-    pub fn locate(&mut self, pattern: &SparsePattern, equations: &[u32]) {
+    /// Looks up where the tangent goes; entries of held unknowns go to the spare last value, columns of unknowns that equal rates (`of_rates`,
+    /// ascending) to a second matrix behind it.
+    pub fn locate(&mut self, pattern: &SparsePattern, equations: &[u32], of_rates: &[usize]) {
         let spare = pattern.entries() as u32;
         let n = self.elements.local();
         let mirror = self.integral.symmetric && pattern.kind() == MatrixKind::Unsymmetric;
@@ -54,7 +55,8 @@ impl Term {
         let place = |a: u32, b: u32| {
             let (row, column) = (equations[a as usize], equations[b as usize]);
             let free = row != NONE && column != NONE;
-            free.then(|| pattern.position(row, column)).flatten().map_or(spare, |p| p as u32)
+            let second = if of_rates.binary_search(&(b as usize)).is_ok() { spare + 1 } else { 0 };
+            free.then(|| pattern.position(row, column)).flatten().map_or(spare, |p| p as u32 + second)
         };
         for batch in 0..self.elements.batches() {
             let unknowns = self.elements.unknowns(batch);

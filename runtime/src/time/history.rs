@@ -2,6 +2,7 @@
 //! interpolation evaluates anything inside the last one.
 
 use super::integrator::Point;
+use crate::system::Transfer;
 
 /// Up to three accepted points, newest last. A jump starts a new stretch: what was before says nothing about what comes.
 #[derive(Clone, Debug)]
@@ -23,6 +24,14 @@ impl History {
         if self.points.len() > 3 {
             self.points.remove(0);
             self.from_start = false;
+        }
+    }
+
+    /// Gives all points new numbers.
+    pub fn carry(&mut self, transfer: &Transfer) {
+        for point in &mut self.points {
+            point.values = transfer.apply(&point.values);
+            point.rates = transfer.apply(&point.rates);
         }
     }
 

@@ -42,6 +42,11 @@ impl Magnitudes {
         Self { kinds: groups.into_iter().map(kind).collect(), smallest_step, largest_step }
     }
 
+    /// Gives the kinds new places.
+    pub fn renumber(&mut self, groups: Vec<Group>) {
+        self.kinds.iter_mut().zip(groups).for_each(|(kind, group)| kind.group = group);
+    }
+
     /// Takes account of y.
     pub fn see(&mut self, y: &[f64]) {
         for kind in &mut self.kinds {

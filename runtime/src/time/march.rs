@@ -1,12 +1,13 @@
 //! Marching: accepted steps one after another, each predicted from the last ones, solved, and judged.
 
-use super::ImplicitSystem;
 use super::control::{Control, Verdict, milne_factor};
 use super::history::{History, blend, interpolation_weights};
 use super::integrator::{Point, Tableau, advance, tableau};
 use super::magnitude::Magnitudes;
+use super::{Group, ImplicitSystem};
 use crate::error::SolveError;
 use crate::generated::{Integrator, Solve};
+use crate::system::Transfer;
 
 /// Part of the largest step over which the rates at a start are measured.
 const TRIAL: f64 = 1e-3;
@@ -73,6 +74,12 @@ impl March {
         self.control.restart(self.magnitudes.time_scale(&start.rates));
         self.history = History::new(start);
         Ok(())
+    }
+
+    /// Gives all unknowns new numbers.
+    pub fn carry(&mut self, transfer: &Transfer, groups: Vec<Group>) {
+        self.history.carry(transfer);
+        self.magnitudes.renumber(groups);
     }
 
     /// The last accepted point, or the start.

@@ -18,6 +18,8 @@ pub mod schedule;
 mod tests;
 
 use crate::error::SolveError;
+use crate::mesh::Mesh;
+use crate::system::Transfer;
 use integrator::Point;
 use std::ops::Range;
 
@@ -60,9 +62,22 @@ pub trait ImplicitSystem {
     /// Gives states (by number) new values and makes `y` consistent with them at `time`.
     fn set_states(&mut self, time: f64, y: &mut [f64], values: &[(usize, f64)]) -> Result<(), SolveError>;
 
+    /// Prepares the step after an accepted point. How unknowns go along, where they are numbered anew.
+    ///
+    /// # Errors
+    /// What was prepared cannot go on from there.
+    fn renew(&mut self, _point: &Point) -> Result<Option<Transfer>, SolveError> {
+        Ok(None)
+    }
+
     /// All globals at a time with these unknowns and rates, observables included.
     fn observe(&mut self, point: &Point) -> Vec<f64>;
 
     /// Columns of a field frame (by number) at a point with these globals: node by node, component by component [internal units].
     fn sample(&mut self, frame: usize, point: &Point, g: &[f64]) -> Vec<Vec<f64>>;
+
+    /// The mesh on which frames are sampled now, where it is not the same throughout a run.
+    fn present_mesh(&self) -> Option<Mesh> {
+        None
+    }
 }

@@ -63,7 +63,8 @@ impl Outputs {
         for (frame, schedule) in self.frame_schedules.iter_mut().enumerate() {
             for time in schedule.take(end) {
                 let columns = system.sample(frame, &point(time), &record.at(time));
-                observer.frame(Frame { frame, time, columns })?;
+                let mesh = system.present_mesh();
+                observer.frame(Frame { frame, time, columns, mesh })?;
             }
         }
         Ok(())

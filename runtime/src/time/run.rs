@@ -116,7 +116,19 @@ impl Run<'_> {
         };
         let seen = self.cut_at_event(seen);
         let fired = self.take(seen)?;
-        self.act(fired)
+        let ended = self.act(fired)?;
+        if ended.is_some() || self.march.last().time >= end {
+            return Ok(ended);
+        }
+        Ok(self.renew().err().map(|error| End::Diverged(Box::new(error))))
+    }
+
+    /// Lets the system prepare the next step.
+    fn renew(&mut self) -> Result<(), SolveError> {
+        if let Some(transfer) = self.system.renew(self.march.last())? {
+            self.march.carry(&transfer, self.system.groups());
+        }
+        Ok(())
     }
 
     /// Looks for events in a proposed step.

@@ -1,0 +1,141 @@
+//! Regions that follow bodies: `moving D by u;`, and the ties that let their fields follow those of bodies.
+
+use super::domain::piece_words;
+use super::shape::settle;
+use super::{Checked, Checker, Env, Reported};
+use crate::diagnostic::{Code, Diagnostic, Sink};
+use crate::model::{Expr, ExprKind, FieldId, Model, Moving, Piece, RegionId, StatementKind, Tie, Type};
+use crate::source::Span;
+use crate::syntax::ast;
+
+impl Checker<'_> {
+    /// `moving D by u;`
+    pub(super) fn moving(&mut self, item: &ast::Moving, span: Span) {
+        // What is wrong has been said.
+        let _ = self.moving_regions(item, span);
+    }
+
+    fn moving_regions(&mut self, item: &ast::Moving, span: Span) -> Checked<()> {
+        let env = Env::default();
+        let displacement = match &item.motion {
+            ast::Motion::Given(by) => self.settled(by, &env)?,
+            ast::Motion::Solved { .. } => {
+                return Err(self.report(
+                    Diagnostic::error(Code::Unsupported, span, "mesh motion by equations is not supported")
+                        .help("`moving D by u;` meshes the region anew after every step"),
+                ));
+            }
+        };
+        let ExprKind::Field(by) = displacement.kind else {
+            return Err(self.report(
+                Diagnostic::error(
+                    Code::WrongKind,
+                    displacement.span,
+                    "a region moves by a displacement field",
+                )
+                .help("name the field of the bodies around it: `moving cytosol by u;`"),
+            ));
+        };
+        self.expect(displacement, &Type::POSITION, "what moves a region")?;
+        let domain = self.domain(&item.domain, &env)?;
+        for piece in &domain.pieces {
+            match *piece {
+                Piece::Region(region) => self.rest.moving.push(Moving { region, by, span: domain.span }),
+                other => {
+                    let words = piece_words(&self.geometry, &self.pairs, other);
+                    let message = format!("{words} is no region");
+                    let diagnostic = Diagnostic::error(Code::WrongKind, domain.span, message);
+                    return Err(
+                        self.report(diagnostic.help("regions move; their surfaces follow the bodies"))
+                    );
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// `tie a == b on D;`
+    pub(super) fn tie(
+        &mut self,
+        equation: &ast::Equation,
+        domain: Option<&ast::Expr>,
+        span: Span,
+        env: &Env,
+    ) -> Checked<StatementKind> {
+        let (a, b) = (self.expr(&equation.left, env), self.expr(&equation.right, env));
+        let domain = domain.map(|domain| self.domain(domain, env)).transpose();
+        let (mut a, mut b) = (a?, b?);
+        self.same(&mut a, &mut b, equation.span, "tie")?;
+        let (a, b) = (settle(a), settle(b));
+        let (follower, partner, rate) = match (field_of(&a), field_of(&b)) {
+            (Some((field, false)), Some((partner, rate))) => (field, partner, rate),
+            (Some((partner, true)), Some((field, false))) => (field, partner, true),
+            _ => return Err(self.no_tie(span)),
+        };
+        match domain? {
+            Some(domain) => Ok(StatementKind::Tie(Tie { field: follower, partner, rate }, domain)),
+            None => Err(self.report(
+                Diagnostic::error(Code::MissingArgument, span, "fields are tied on a domain")
+                    .help("write `tie v == dt(u) on D;`"),
+            )),
+        }
+    }
+
+    fn no_tie(&mut self, span: Span) -> Reported {
+        self.report(
+            Diagnostic::error(
+                Code::WrongKind,
+                span,
+                "a tie makes a field equal to another field or to its rate",
+            )
+            .help("write `tie v == dt(u) on D;`"),
+        )
+    }
+}
+
+/// A field, or the rate of one (true).
+fn field_of(e: &Expr) -> Option<(FieldId, bool)> {
+    match &e.kind {
+        ExprKind::Field(field) => Some((*field, false)),
+        ExprKind::Rate(inner) => match inner.kind {
+            ExprKind::Field(field) => Some((field, true)),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// Reports fields that live on bodies and on moving regions at once, and displacements that live where they make things move.
+pub(super) fn check(model: &Model, sink: &mut Sink) {
+    for moving in &model.moving {
+        let region = &model.geometry.regions[moving.region.0].name;
+        let by = &model.fields[moving.by.0];
+        if by.domain.regions().contains(&moving.region) {
+            let message = format!("`{}` lives on `{region}` itself", by.name);
+            sink.push(
+                Diagnostic::error(Code::Misplaced, moving.span, message)
+                    .label(by.span, "declared here")
+                    .help("a moving region follows the bodies around it, whose displacement ends at its surface"),
+            );
+        }
+    }
+    let moves = |region: &RegionId| model.moving.iter().any(|moving| moving.region == *region);
+    for field in &model.fields {
+        let regions = field.domain.regions();
+        if let (Some(moving), Some(body)) =
+            (regions.iter().find(|r| moves(r)), regions.iter().find(|r| !moves(r)))
+        {
+            let name = |region: &RegionId| &model.geometry.regions[region.0].name;
+            let message = format!(
+                "`{}` lives on `{}`, which moves, and on `{}`, which does not",
+                field.name,
+                name(moving),
+                name(body)
+            );
+            sink.push(
+                Diagnostic::error(Code::Misplaced, field.span, message)
+                    .help("declare two fields, and `tie` them where the regions meet"),
+            );
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! Meshes of moving regions: a region between bodies whose surface is theirs, in its present shape.
+//!
+//! A [`Follower`] knows which edges of the bodies' mesh go around its region. At any displacement of the bodies it fills what lies between them with
+//! new cells that share the bodies' curved edges, node by node; only the pieces on the axis of symmetry are divided anew.
+
+use super::assemble::{Draft, assemble};
+use super::outline::{Chain, Outline, cuts};
+use super::sizing::SizeField;
+use super::triangulate::triangulate;
+use super::{CellEdge, Mesh, MeshError, MeshSizing, PathEdge};
+use ansatz_geometry::{Curve, Geometry, Piece, Point, Source, point};
+use std::collections::BTreeMap;
+
+/// One side of a loop around the region.
+#[derive(Debug, Clone, Copy)]
+enum Side {
+    /// A segment of a path, by its place in [`Mesh::paths`]; against its direction where reversed.
+    Surface { path: usize, reversed: bool },
+    /// A piece of the axis between two vertices of the geometry, in the direction of travel.
+    Axis { ends: [usize; 2] },
+}
+
+/// A region that is meshed anew whenever the bodies around it have moved.
+#[derive(Debug, Clone)]
+pub struct Follower {
+    region: String,
+    sides: Vec<Side>,
+    largest: f64,
+    growth: f64,
+}
+
+impl Follower {
+    /// The region with index `region` of a checked geometry.
+    ///
+    /// # Errors
+    /// The loop of the region does not close.
+    pub fn new(geometry: &Geometry, region: usize, sizing: &MeshSizing) -> Result<Self, MeshError> {
+        let boundary = geometry.boundary(region).map_err(MeshError::Geometry)?;
+        let mut first = Vec::new();
+        let mut count = 0;
+        for path in &geometry.paths {
+            first.push(count);
+            count += path.segments.len();
+        }
+        let side = |piece: &Piece| match piece.source {
+            Source::Segment { path, segment } => {
+                Side::Surface { path: first[path] + segment, reversed: piece.reversed }
+            }
+            Source::Axis => Side::Axis { ends: piece.ends },
+        };
+        let region = geometry.regions[region].name.clone();
+        let largest = sizing.largest_in(&region, geometry);
+        let sides = boundary.pieces().map(side).collect();
+        Ok(Self { region, sides, largest, growth: sizing.growth })
+    }
+
+    /// Name of the region.
+    pub fn region(&self) -> &str {
+        &self.region
+    }
+
+    /// Adds the region, in the shape that it has where the bodies' nodes lie at `positions`, to a mesh.
+    ///
+    /// # Errors
+    /// [`MeshError::Overlap`] where surfaces run into each other.
+    pub fn attach(&self, mesh: &mut Mesh, positions: &[Point]) -> Result<(), MeshError> {
+        let outline = self.outline(mesh, positions)?;
+        let overlap = |at| MeshError::Overlap { region: self.region.clone(), at };
+        let field = self.sizes(&outline);
+        let triangles = triangulate(&outline, &field).map_err(|(at, _)| overlap(at))?;
+        let part = assemble(Draft {
+            points: triangles.points,
+            cells: triangles.cells,
+            regions: vec![self.region.clone()],
+            chains: outline.chains,
+            corners: Vec::new(),
+        });
+        if part.cells.is_empty() {
+            return Err(overlap(outline.points.first().copied().unwrap_or_default()));
+        }
+        self.join(mesh, part);
+        Ok(())
+    }
+
+    /// Mesh paths of the bodies around the region, in the order of its own.
+    fn surfaces(&self) -> impl Iterator<Item = (usize, bool)> {
+        self.sides.iter().filter_map(|side| match *side {
+            Side::Surface { path, reversed } => Some((path, reversed)),
+            Side::Axis { .. } => None,
+        })
+    }
+
+    /// The loops as they lie now, surfaces first.
+    fn outline(&self, mesh: &Mesh, positions: &[Point]) -> Result<Outline, MeshError> {
+        let mut outline = Outline::default();
+        let mut place = BTreeMap::new();
+        let mut number = |node: u32, points: &mut Vec<Point>| {
+            *place.entry(node).or_insert_with(|| {
+                points.push(positions[node as usize]);
+                points.len() - 1
+            })
+        };
+        for (path, reversed) in self.surfaces() {
+            let surface = &mesh.paths[path];
+            let Some(first) = surface.edges.first() else { continue };
+            let mut points = vec![number(first.nodes[0], &mut outline.points)];
+            points.extend(surface.edges.iter().map(|edge| number(edge.nodes[1], &mut outline.points)));
+            let middles = surface.edges.iter().map(|edge| positions[edge.nodes[2] as usize]).collect();
+            let sides = if reversed { [None, Some(0)] } else { [Some(0), None] };
+            outline.chains.push(Chain {
+                path: surface.path.clone(),
+                label: surface.label.clone(),
+                points,
+                middles,
+                sides,
+            });
+        }
+        let field = self.sizes(&outline);
+        for side in &self.sides {
+            let Side::Axis { ends } = *side else { continue };
+            // Regions keep the axis on their left, so that the pieces run downwards; the path runs upwards.
+            let ends = [ends[1], ends[0]].map(|vertex| number(mesh.corners[vertex], &mut outline.points));
+            let chain = self.divide_axis(&mut outline.points, ends, &field)?;
+            outline.chains.push(chain);
+        }
+        outline.boundary_points = outline.points.len();
+        Ok(outline)
+    }
+
+    fn divide_axis(
+        &self,
+        points: &mut Vec<Point>,
+        ends: [usize; 2],
+        field: &SizeField<'_>,
+    ) -> Result<Chain, MeshError> {
+        let [start, end] = ends.map(|end| points[end]);
+        if end[1] <= start[1] {
+            return Err(MeshError::Overlap { region: self.region.clone(), at: start });
+        }
+        let curve = Curve::Line { from: start, to: end };
+        let too_fine = |edges| MeshError::TooFine { name: String::from("axis"), edges };
+        let cuts = cuts(&curve, field).map_err(too_fine)?;
+        let mut along = vec![ends[0]];
+        for &s in &cuts[1..cuts.len() - 1] {
+            along.push(points.len());
+            points.push(curve.point(s));
+        }
+        along.push(ends[1]);
+        let middles = cuts.windows(2).map(|pair| curve.point(0.5 * (pair[0] + pair[1]))).collect();
+        Ok(Chain { path: "axis".into(), label: None, points: along, middles, sides: [None, Some(0)] })
+    }
+
+    /// Cells start with the size of the edges around them and grow inwards.
+    fn sizes(&self, outline: &Outline) -> SizeField<'static> {
+        let mut smallest = vec![self.largest; outline.points.len()];
+        for [a, b] in outline.chains.iter().flat_map(Chain::edges) {
+            let length = point::distance(outline.points[a], outline.points[b]);
+            for end in [a, b] {
+                smallest[end] = smallest[end].min(length);
+            }
+        }
+        SizeField::around(smallest.into_iter().zip(outline.points.iter().copied()), self.largest, self.growth)
+    }
+
+    /// Appends the cells of the region behind those of a mesh.
+    fn join(&self, mesh: &mut Mesh, part: Mesh) {
+        let (first_node, first_cell) = (mesh.nodes.len() as u32, mesh.cells.len() as u32);
+        let region = mesh.regions.len() as u16;
+        let moved = |node: u32| node + first_node;
+        for ((path, _), own) in self.surfaces().zip(&part.paths) {
+            for (edge, own) in mesh.paths[path].edges.iter().zip(&own.edges) {
+                mesh.links.extend((0..3).map(|k| [moved(own.nodes[k]), edge.nodes[k]]));
+            }
+        }
+        mesh.links.sort_unstable();
+        mesh.links.dedup();
+        mesh.nodes.extend(part.nodes);
+        mesh.cells.extend(part.cells.iter().map(|cell| cell.map(moved)));
+        mesh.cell_region.extend(part.cell_region.iter().map(|_| region));
+        mesh.regions.push(self.region.clone());
+        let side = |side: CellEdge| CellEdge { cell: side.cell + first_cell, ..side };
+        for mut path in part.paths {
+            path.seen_from = Some(self.region.clone());
+            for edge in &mut path.edges {
+                *edge = PathEdge {
+                    nodes: edge.nodes.map(moved),
+                    left: edge.left.map(side),
+                    right: edge.right.map(side),
+                };
+            }
+            mesh.paths.push(path);
+        }
+    }
+}

@@ -4,7 +4,9 @@ use super::domain::piece_words;
 use super::shape::settle;
 use super::{Checked, Checker, Env, Reported};
 use crate::diagnostic::{Code, Diagnostic, Sink};
-use crate::model::{Expr, ExprKind, FieldId, Model, Moving, Piece, RegionId, StatementKind, Tie, Type};
+use crate::model::{
+    Expr, ExprKind, Field, FieldId, Model, Moving, Piece, RegionId, StatementKind, Tie, Type,
+};
 use crate::source::Span;
 use crate::syntax::ast;
 
@@ -105,12 +107,20 @@ fn field_of(e: &Expr) -> Option<(FieldId, bool)> {
     }
 }
 
+/// The regions on which a field lives.
+fn regions(field: &Field) -> impl Iterator<Item = RegionId> {
+    field.domain.pieces.iter().filter_map(|piece| match *piece {
+        Piece::Region(region) => Some(region),
+        _ => None,
+    })
+}
+
 /// Reports fields that live on bodies and on moving regions at once, and displacements that live where they make things move.
 pub(super) fn check(model: &Model, sink: &mut Sink) {
     for moving in &model.moving {
         let region = &model.geometry.regions[moving.region.0].name;
         let by = &model.fields[moving.by.0];
-        if by.domain.regions().contains(&moving.region) {
+        if regions(by).any(|region| region == moving.region) {
             let message = format!("`{}` lives on `{region}` itself", by.name);
             sink.push(
                 Diagnostic::error(Code::Misplaced, moving.span, message)
@@ -121,11 +131,8 @@ pub(super) fn check(model: &Model, sink: &mut Sink) {
     }
     let moves = |region: &RegionId| model.moving.iter().any(|moving| moving.region == *region);
     for field in &model.fields {
-        let regions = field.domain.regions();
-        if let (Some(moving), Some(body)) =
-            (regions.iter().find(|r| moves(r)), regions.iter().find(|r| !moves(r)))
-        {
-            let name = |region: &RegionId| &model.geometry.regions[region.0].name;
+        if let (Some(moving), Some(body)) = (regions(field).find(moves), regions(field).find(|r| !moves(r))) {
+            let name = |region: RegionId| &model.geometry.regions[region.0].name;
             let message = format!(
                 "`{}` lives on `{}`, which moves, and on `{}`, which does not",
                 field.name,

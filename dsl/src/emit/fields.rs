@@ -32,7 +32,7 @@ pub fn fields(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
         };
         let components = Literal::usize_unsuffixed(names.len());
         let space = if field.space == Space::P1 { quote!(Space::P1) } else { quote!(Space::P2) };
-        let parts = Region::parts(&field.domain).into_iter().map(|part| domain(model, &part));
+        let parts = Region::parts(&field.domain).into_iter().map(|part| domain(model, &part, []));
         let parts: Vec<TokenStream> = parts.collect();
         let start = at_point(&mut forms.lowering, slots, start, true);
         quote!(Field {

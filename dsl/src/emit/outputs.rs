@@ -40,7 +40,8 @@ pub fn functionals(
             FunctionalKind::Point(at, form) => {
                 let at = list(&mut forms.lowering, slots, at, &|values| quote!([#(#values),*]));
                 let function = point_function(&mut forms.lowering, slots, form);
-                let domain = domain(forms.lowering.model, &form.region);
+                let fields = form.inputs.iter().map(|one| one.input.field);
+                let domain = domain(forms.lowering.model, &form.region, fields);
                 quote!(FunctionalKind::Point { at: #at, domain: #domain, function: #function })
             }
         };
@@ -102,7 +103,7 @@ fn observable(
         QuantityKind::Point(at, region, values) => {
             let at = list(lowering, slots, at, &|values| quote!([#(#values),*]));
             let function = values_at_points(lowering, slots, region, values);
-            let domain = domain(model, region);
+            let domain = domain(model, region, fields_of(lowering, values));
             quote!(ObservableKind::Point(#at, #domain, #function))
         }
         QuantityKind::PairExtreme(reduction, pair, sides, value) => {
@@ -218,7 +219,9 @@ pub fn frames(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
 }
 
 fn one_frames(lowering: &mut Lowering<'_>, slots: &Slots, frames: &Frames) -> TokenStream {
-    let (domain, every) = (domain(lowering.model, &frames.region), every(lowering, slots, &frames.every));
+    let fields = frames.function.inputs.iter().map(|one| one.input.field);
+    let domain = domain(lowering.model, &frames.region, fields);
+    let every = every(lowering, slots, &frames.every);
     let columns = frames.columns.iter().map(|column| {
         let (name, (value, unit)) = (&column.name, &column.unit);
         let (unit_value, [components, offset]) = (number(*value), [column.components, column.offset].map(Literal::usize_unsuffixed));

@@ -87,7 +87,7 @@ fn write_frame(
     frame: &Frame,
 ) -> Result<(), Error> {
     let frames = &program.frames[frame.frame];
-    let present = frame.mesh.as_ref().map(|mesh| grid(mesh, frames.regions)).transpose()?;
+    let present = frame.mesh.as_ref().map(|mesh| grid(mesh, frames.domain)).transpose()?;
     let grid = present.as_ref().unwrap_or(&grids[frame.frame]);
     let stem = if grids.len() == 1 { String::from("fields") } else { format!("fields{}", frame.frame) };
     let number = series[frame.frame].len();

@@ -6,6 +6,7 @@
 use super::System;
 use super::unknowns::{FieldNumbers, Unknowns};
 use crate::error::Error;
+use crate::generated::Domain;
 use crate::mesh::{Locator, Mesh, MeshError};
 use ansatz_elements::Element;
 use ansatz_geometry::point;
@@ -47,8 +48,11 @@ impl System {
 
     /// Whether a field lives on a region that follows bodies.
     pub fn moves(&self, field: usize) -> bool {
-        let regions = self.program.fields[field].regions;
-        self.program.moving.iter().any(|moving| regions.contains(&moving.region))
+        let lives = |region: &str| {
+            let mut domains = self.program.fields[field].domains.iter();
+            domains.any(|domain| matches!(domain, Domain::Cells(regions) if regions.contains(&region)))
+        };
+        self.program.moving.iter().any(|moving| lives(moving.region))
     }
 
     /// Meshes moving regions anew around bodies displaced as in y, and goes on from there. How unknowns go along.

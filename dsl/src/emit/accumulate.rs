@@ -98,8 +98,12 @@ impl Emitter<'_, '_> {
         trial: &FieldUse,
     ) -> (TokenStream, Vec<Slope>) {
         let (mut code, mut slopes) = (Vec::new(), Vec::new());
+        let first = |test: &FieldInput| {
+            self.kernel.uses.iter().find(|one| one.field == test.field).map_or(0, |one| one.first)
+        };
+        let is_needed = |test: &FieldInput| !tangent.symmetric || first(test) >= trial.first;
         for component in 0..trial.components {
-            for (test, row) in tangent.tests.iter().zip(entries) {
+            for (test, row) in tangent.tests.iter().zip(entries).filter(|(test, _)| is_needed(test)) {
                 let inputs = tangent.trials.iter().zip(row);
                 let of_component =
                     inputs.filter(|(input, _)| input.field == trial.field && input.component == component);

@@ -4,15 +4,17 @@ ansatz::include_model!("../dry/model.ansatz");
 ansatz::include_model!("../dry_axis_points/model.ansatz");
 ansatz::include_model!("../dry_printed/model.ansatz");
 ansatz::include_model!("../dry_wide_roof/model.ansatz");
+ansatz::include_model!("../wet/model.ansatz");
 ansatz::include_model!("../wet_solids/model.ansatz");
 
 use ansatz::generated::Program;
 
 /// All of them.
-pub static PROGRAMS: [&Program; 5] = [
+pub static PROGRAMS: [&Program; 6] = [
     &dry_contact::PROGRAM,
     &dry_axis_points::PROGRAM,
     &dry_printed::PROGRAM,
     &dry_wide_roof::PROGRAM,
+    &wet_contact::PROGRAM,
     &wet_solids::PROGRAM,
 ];

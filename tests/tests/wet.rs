@@ -61,12 +61,8 @@ fn the_cytosol_keeps_its_volume() {
 fn suction_makes_the_membrane_cave_in_and_the_pressure_of_the_film_outweighs_its_friction() {
     let (t, down, cave) = (column("t"), column("p_down"), column("cave"));
     let lowest = (0..t.len()).min_by(|&a, &b| down[a].total_cmp(&down[b])).expect("rows");
-    assert!(
-        down[lowest] < -25.0 && (70.0..85.0).contains(&t[lowest]),
-        "{} Pa at {} s",
-        down[lowest],
-        t[lowest]
-    );
+    assert!((down[lowest] / -32.0 - 1.0).abs() < 0.1, "{} Pa", down[lowest]);
+    assert!((t[lowest] - 78.0).abs() < 2.0, "{} s", t[lowest]);
     assert!(down[lowest + 4] > 0.5 * down[lowest], "the membrane gives way: {} Pa", down[lowest + 4]);
     assert!(cave[lowest + 4] < cave[lowest], "{} um after {} um", cave[lowest + 4], cave[lowest]);
     let at = t.iter().position(|&t| t >= 88.0).expect("it runs past 88 s");

@@ -96,6 +96,11 @@ impl Simulation {
         &self.record
     }
 
+    /// The discretised model by itself.
+    pub fn into_system(self) -> System {
+        self.discretised.system
+    }
+
     /// The discretised model.
     pub fn system(&self) -> &System {
         &self.discretised.system

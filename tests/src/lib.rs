@@ -6,7 +6,6 @@ pub mod notes;
 pub mod sample;
 
 use ansatz::generated::Program;
-use ansatz::mesh::Mesh;
 use ansatz::system::System;
 
 /// Every compiled model of the repository.
@@ -22,9 +21,5 @@ pub fn programs() -> Vec<&'static Program> {
 pub fn system(program: &'static Program, set: &[(&str, &str)]) -> System {
     let set: Vec<_> = set.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
     let values = ansatz::settings::resolve(program, &set).expect("valid parameters");
-    let mut g = vec![0.0; program.layout.length];
-    g[program.layout.parameters[0]..program.layout.parameters[1]].copy_from_slice(&values);
-    let geometry = (program.geometry)(&g).expect("a geometry");
-    let mesh = Mesh::generate(&geometry, &(program.sizing)(&g)).expect("a mesh");
-    System::new(program, &values, mesh).expect("a system")
+    ansatz::Simulation::new(program, &values).expect("a system").into_system()
 }

@@ -56,7 +56,7 @@ impl System {
     }
 
     /// Residual that rounding alone may leave: the rounding of the unknowns, and of the positions that displacements (fields measured in the unit of
-    /// length) add to, through the diagonal of the last tangent, or through all of it where the diagonal says little.
+    /// length) add to: through the diagonal of the last tangent, or through all of it where fields act on each other.
     fn rounding(&self, y: &[f64]) -> Vec<f64> {
         let length = self.program.base_units[0];
         let mut sizes = vec![0.0; self.free.len()];
@@ -68,11 +68,18 @@ impl System {
             own.zip(&mut sizes[first..]).for_each(|(&u, size)| *size = y[u as usize].abs() + offset);
         }
         let mut sums = vec![0.0; self.free.len()];
-        if self.is_symmetric() {
+        let symmetric = self.is_symmetric();
+        if symmetric && self.unknowns.fields.len() == 1 {
             let diagonal = self.diagonal.iter().map(|&place| self.values[place].abs());
             sums.iter_mut().zip(diagonal).zip(&sizes).for_each(|((sum, entry), size)| *sum = entry * size);
         } else {
-            self.pattern.for_each(|place, row, column| sums[row] += self.values[place].abs() * sizes[column]);
+            self.pattern.for_each(|place, row, column| {
+                let entry = self.values[place].abs();
+                sums[row] += entry * sizes[column];
+                if symmetric && row != column {
+                    sums[column] += entry * sizes[row];
+                }
+            });
         }
         sums.iter_mut().for_each(|sum| *sum *= ROUNDINGS * f64::EPSILON);
         sums

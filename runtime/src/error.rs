@@ -101,6 +101,9 @@ impl fmt::Display for Cause {
 
 impl fmt::Display for SolveError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Cause::Mesh(why) = &self.cause {
+            return writeln!(f, "{why} (after the step to t = {:.6})", self.time);
+        }
         writeln!(f, "{} at t = {:.6}, step {:.3e}", self.cause, self.time, self.step)?;
         writeln!(f, "  {} iterations, relative residual {:.2e}", self.iterations, self.residual)?;
         writeln!(f, "  largest residual: {}", self.place)?;

@@ -184,7 +184,7 @@ impl ImplicitSystem for Discretised {
             step: 0.0,
             iterations: 0,
             residual: 0.0,
-            place: String::from("the step before was solved"),
+            place: String::new(),
             terms: Vec::new(),
         };
         let transfer = self.system.remesh(&point.values).map_err(stuck)?;

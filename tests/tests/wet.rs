@@ -20,11 +20,7 @@ fn passage() -> &'static Notes {
 
 /// A column of one of the model's tables, in display units.
 fn column(name: &str) -> Vec<f64> {
-    let tables = wet_contact::PROGRAM.tables.iter().enumerate();
-    let mut found = tables
-        .filter_map(|(table, of)| Some((table, of.columns.iter().position(|column| column.name == name)?)));
-    let (table, k) = found.next().expect("a table has it");
-    passage().rows.iter().filter(|(of, _)| *of == table).map(|(_, row)| row[k]).collect()
+    passage().column(&wet_contact::PROGRAM, name)
 }
 
 fn largest(values: Vec<f64>) -> f64 {

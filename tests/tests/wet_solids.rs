@@ -24,9 +24,7 @@ fn passage() -> &'static Notes {
 
 /// A column of the model's table, in display units.
 fn column(name: &str) -> Vec<f64> {
-    let columns = wet_solids::PROGRAM.tables[0].columns;
-    let k = columns.iter().position(|column| column.name == name).expect("the table has it");
-    passage().rows.iter().map(|(_, row)| row[k]).collect()
+    passage().column(&wet_solids::PROGRAM, name)
 }
 
 #[test]

@@ -42,6 +42,7 @@ pub(crate) fn assemble(mut draft: Draft) -> Mesh {
         paths: Vec::new(),
         corners: draft.corners.into_iter().map(node).collect(),
         body_cells: draft.cells.len(),
+        body_nodes: 0,
         links: Vec::new(),
     };
     mesh.vertex_count = mesh.nodes.len();
@@ -55,6 +56,7 @@ pub(crate) fn assemble(mut draft: Draft) -> Mesh {
         let (path, label) = (chain.path.clone(), chain.label.clone());
         mesh.paths.push(MeshPath { path, label, seen_from: None, edges });
     }
+    mesh.body_nodes = mesh.nodes.len();
     straighten(&mut mesh);
     mesh
 }

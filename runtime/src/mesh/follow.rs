@@ -4,7 +4,7 @@
 //! new cells that share the bodies' curved edges, node by node; only the pieces on the axis of symmetry are divided anew.
 
 use super::assemble::{Draft, assemble};
-use super::outline::{Chain, Outline, cuts};
+use super::outline::{Chain, Outline};
 use super::sizing::SizeField;
 use super::triangulate::triangulate;
 use super::{CellEdge, Mesh, MeshError, MeshSizing, PathEdge};
@@ -52,11 +52,6 @@ impl Follower {
         let largest = sizing.largest_in(&region, geometry);
         let sides = boundary.pieces().map(side).collect();
         Ok(Self { region, sides, largest, growth: sizing.growth })
-    }
-
-    /// Name of the region.
-    pub fn region(&self) -> &str {
-        &self.region
     }
 
     /// Adds the region, in the shape that it has where the bodies' nodes lie at `positions`, to a mesh.
@@ -120,7 +115,7 @@ impl Follower {
             let Side::Axis { ends } = *side else { continue };
             // Regions keep the axis on their left, so that the pieces run downwards; the path runs upwards.
             let ends = [ends[1], ends[0]].map(|vertex| number(mesh.corners[vertex], &mut outline.points));
-            let chain = self.divide_axis(&mut outline.points, ends, &field)?;
+            let chain = self.divide_axis(&mut outline, ends, &field)?;
             outline.chains.push(chain);
         }
         outline.boundary_points = outline.points.len();
@@ -129,25 +124,18 @@ impl Follower {
 
     fn divide_axis(
         &self,
-        points: &mut Vec<Point>,
+        outline: &mut Outline,
         ends: [usize; 2],
         field: &SizeField<'_>,
     ) -> Result<Chain, MeshError> {
-        let [start, end] = ends.map(|end| points[end]);
-        if end[1] <= start[1] {
-            return Err(MeshError::Overlap { region: self.region.clone(), at: start });
+        let [from, to] = ends.map(|end| outline.points[end]);
+        if to[1] <= from[1] {
+            return Err(MeshError::Overlap { region: self.region.clone(), at: from });
         }
-        let curve = Curve::Line { from: start, to: end };
-        let too_fine = |edges| MeshError::TooFine { name: String::from("axis"), edges };
-        let cuts = cuts(&curve, field).map_err(too_fine)?;
-        let mut along = vec![ends[0]];
-        for &s in &cuts[1..cuts.len() - 1] {
-            along.push(points.len());
-            points.push(curve.point(s));
-        }
-        along.push(ends[1]);
-        let middles = cuts.windows(2).map(|pair| curve.point(0.5 * (pair[0] + pair[1]))).collect();
-        Ok(Chain { path: "axis".into(), label: None, points: along, middles, sides: [None, Some(0)] })
+        let (inner, middles) =
+            outline.divide_curve(&Curve::Line { from, to }, field, &|| String::from("axis"))?;
+        let points = [ends[0]].into_iter().chain(inner).chain([ends[1]]).collect();
+        Ok(Chain { path: "axis".into(), label: None, points, middles, sides: [None, Some(0)] })
     }
 
     /// Cells start with the size of the edges around them and grow inwards.

@@ -58,6 +58,8 @@ pub struct Mesh {
     pub corners: Vec<u32>,
     /// How many of the cells are those of bodies, in their reference shape; those of [moving regions](Follower), in their present one, follow.
     pub body_cells: usize,
+    /// How many of the nodes are those of bodies.
+    pub body_nodes: usize,
     /// Nodes of moving regions on the surface of bodies, ascending, each with the body's node.
     pub links: Vec<[u32; 2]>,
 }
@@ -115,12 +117,8 @@ impl Mesh {
         let regions = self.cell_region[..self.body_cells].last().map_or(0, |&last| usize::from(last) + 1);
         let of_bodies = |path: &&MeshPath| path.seen_from.is_none();
         let paths: Vec<MeshPath> = self.paths.iter().filter(of_bodies).cloned().collect();
-        let nodes = self.links.first().map_or(self.nodes.len(), |_| {
-            let moving = self.cells[self.body_cells..].iter().flatten();
-            moving.min().map_or(self.nodes.len(), |&first| first as usize)
-        });
         Mesh {
-            nodes: self.nodes[..nodes].to_vec(),
+            nodes: self.nodes[..self.body_nodes].to_vec(),
             vertex_count: self.vertex_count,
             cells: self.cells[..self.body_cells].to_vec(),
             cell_region: self.cell_region[..self.body_cells].to_vec(),
@@ -128,6 +126,7 @@ impl Mesh {
             paths,
             corners: self.corners.clone(),
             body_cells: self.body_cells,
+            body_nodes: self.body_nodes,
             links: Vec::new(),
         }
     }

@@ -7,6 +7,7 @@ use super::error::MeshError;
 use super::sizing::SizeField;
 use ansatz_geometry::{Boundary, Curve, Geometry, Point, Source, Vertices};
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// The edges of one segment of a path, or of one piece of the axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -86,18 +87,26 @@ impl Outline {
     }
 
     fn divide(&mut self, span: &Span, vertices: &[Point], field: &SizeField<'_>) -> Result<Chain, MeshError> {
-        let cuts = cuts(&span.curve, field).map_err(|edges| MeshError::TooFine {
-            name: span.label.as_ref().map_or(span.path.clone(), |label| format!("{}.{label}", span.path)),
-            edges,
-        })?;
+        let name = || span.label.as_ref().map_or(span.path.clone(), |label| format!("{}.{label}", span.path));
         let mut points = vec![self.corner(span.ends[0], vertices)];
-        for &s in &cuts[1..cuts.len() - 1] {
-            points.push(self.points.len());
-            self.points.push(span.curve.point(s));
-        }
+        let (inner, middles) = self.divide_curve(&span.curve, field, &name)?;
+        points.extend(inner);
         points.push(self.corner(span.ends[1], vertices));
-        let middles = cuts.windows(2).map(|pair| span.curve.point(0.5 * (pair[0] + pair[1]))).collect();
         Ok(Chain { path: span.path.clone(), label: span.label.clone(), points, middles, sides: span.sides })
+    }
+
+    /// Adds the points between the ends of a curve: their indices, and the middles of all its edges.
+    pub(crate) fn divide_curve(
+        &mut self,
+        curve: &Curve,
+        field: &SizeField<'_>,
+        name: &dyn Fn() -> String,
+    ) -> Result<(Range<usize>, Vec<Point>), MeshError> {
+        let cuts = cuts(curve, field).map_err(|edges| MeshError::TooFine { name: name(), edges })?;
+        let first = self.points.len();
+        self.points.extend(cuts[1..cuts.len() - 1].iter().map(|&s| curve.point(s)));
+        let middles = cuts.windows(2).map(|pair| curve.point(0.5 * (pair[0] + pair[1]))).collect();
+        Ok((first..self.points.len(), middles))
     }
 
     /// The point of a vertex of the geometry, added on its first use.
@@ -148,7 +157,7 @@ fn spans(geometry: &Geometry, boundaries: &[Boundary], vertices: &Vertices) -> V
 }
 
 /// Parameters 0 = s_0 < ... < s_n = 1 of the division of a curve, or the number of edges if there are too many.
-pub(crate) fn cuts(curve: &Curve, field: &SizeField<'_>) -> Result<Vec<f64>, f64> {
+fn cuts(curve: &Curve, field: &SizeField<'_>) -> Result<Vec<f64>, f64> {
     let sample = |count: usize| -> Vec<f64> {
         (0..=count).map(|k| curve.length() / field.at(curve.point(k as f64 / count as f64))).collect()
     };

@@ -44,6 +44,21 @@ impl System {
         if scales.is_empty() { norm(residual) } else { known.fold(0.0, f64::max) }
     }
 
+    /// The equation whose residual is largest against the forces in its field.
+    pub(super) fn worst_equation(
+        &mut self,
+        residual: &[f64],
+        alpha: f64,
+        y: &[f64],
+        rates: &[f64],
+    ) -> Option<usize> {
+        let scales = self.force_scales(y, rates, alpha);
+        let relative = self.field_equations().into_iter().zip(scales).flat_map(|(range, scale)| {
+            range.map(move |k| (k, residual[k].abs() / if scale > 0.0 { scale } else { 1.0 }))
+        });
+        relative.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)
+    }
+
     /// Whether the residual of every field is as small as wanted, or as its rounding.
     pub(super) fn is_small(&self, residual: &[f64], scales: &[f64], y: &[f64]) -> bool {
         let wanted = |k: usize| self.settings.newton_tolerance * scales.get(k).copied().unwrap_or(0.0);

@@ -338,9 +338,7 @@ impl System {
             terms: Vec::new(),
         };
         let Some(last) = last else { return error };
-        let magnitude = |i: &usize| last.residual[*i].abs();
-        let Some(worst) = (0..last.residual.len()).max_by(|a, b| magnitude(a).total_cmp(&magnitude(b)))
-        else {
+        let Some(worst) = self.worst_equation(&last.residual, problem.alpha, &last.y, &last.rates) else {
             return error;
         };
         error.place = self.name_equation(worst);

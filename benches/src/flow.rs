@@ -1,5 +1,6 @@
 //! P3: stationary incompressible flow with quadratic velocities and linear pressures, on the peers' meshes.
 
+use crate::clock::median;
 use ansatz::generated::Program;
 use ansatz::mesh::{Mesh, mesh_of_triangles, structured_rectangle};
 use ansatz::system::{StageProblem, System};
@@ -84,6 +85,17 @@ impl Flow {
             results.push(("vmin", v.iter().copied().fold(f64::INFINITY, f64::min)));
         }
         Ok(Flowing { iterations: report.iterations, results })
+    }
+
+    /// Time of one assembly of residual and tangent \[s\], measured apart from the solve.
+    ///
+    /// # Errors
+    /// None with the shipped models.
+    pub fn assembly(&mut self) -> Result<f64, Error> {
+        let problem = StageProblem { time: 0.0, alpha: 0.0, base: &self.start };
+        let probe = self.system.probe(&problem, &self.start);
+        let mut probe = probe.map_err(|cause| Error::Model(cause.to_string()))?;
+        Ok(median(|| probe.assemble()))
     }
 
     /// A component of the velocity at the nodes half-way along its own direction.

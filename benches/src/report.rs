@@ -5,9 +5,14 @@ use crate::clock::{Clock, median};
 use crate::compiler::stages;
 use crate::flow::Flow;
 use crate::solves::Solve;
+use ansatz::Simulation;
 use ansatz::observer::Observer;
+use ansatz_models::dry_contact;
 use serde_json::{Value, json};
 use std::path::Path;
+
+/// Corrections of the size of cells towards a wanted number of them.
+const CORRECTIONS: usize = 4;
 
 /// P1 on n x n x 2 triangles: nanoseconds per element of residual and tangent, the tangent with its residual and the insertion.
 ///
@@ -68,9 +73,10 @@ fn flow(case: &str, setup: impl Fn() -> Result<Flow, ansatz::Error>) -> Result<V
     let run = clock.seconds();
     let mut line = json!({
         "problem": "P3", "case": case, "peer": "ansatz", "n_elements": prepared.cells(), "n_dofs": prepared.unknowns(),
-        "total_its": solved.iterations, "setup_s": setup, "run_s": run, "total_s": setup + run,
-        "per_it_ms": run / solved.iterations as f64 * 1e3,
+        "total_its": solved.iterations,
     });
+    let one_assembly = prepared.assembly().map_err(|e| e.to_string())?;
+    add_times(&mut line, [setup, run, one_assembly], solved.iterations);
     for (name, value) in solved.results {
         line[name] = json!(value);
     }
@@ -96,15 +102,12 @@ fn solve(
     let clock = Clock::start();
     let solved = prepared.run().map_err(|e| e.to_string())?;
     let run = clock.seconds();
-    // The run does not tell its parts: assembly is timed by itself, and `solve_s` is all the rest.
-    let one_assembly = prepared.assembly().map_err(|e| e.to_string())?;
-    let assembly = solved.total as f64 * one_assembly;
     let mut line = json!({
         "problem": problem, "peer": "ansatz", "n_elements": prepared.cells(), "n_dofs": prepared.unknowns(),
-        "its": solved.iterations, "total_its": solved.total, "setup_s": setup, "assembly_s": assembly,
-        "solve_s": run - assembly, "run_s": run, "total_s": setup + run,
-        "per_it_ms": run / solved.total as f64 * 1e3, "per_it_asm_ms": one_assembly * 1e3,
+        "its": solved.iterations, "total_its": solved.total,
     });
+    let one_assembly = prepared.assembly().map_err(|e| e.to_string())?;
+    add_times(&mut line, [setup, run, one_assembly], solved.total);
     // The first column of the tables is the time.
     for (name, value) in results.iter().zip(solved.results.iter().skip(1)) {
         line[name] = json!(value);
@@ -112,12 +115,32 @@ fn solve(
     Ok(line)
 }
 
-/// Seconds of each stage of the compiler.
+/// Adds the times of setting up, of the run and of one assembly \[s\]. The run does not tell its parts: assembly is timed by itself, and `solve_s`
+/// is all the rest.
+fn add_times(line: &mut Value, [setup, run, one_assembly]: [f64; 3], iterations: usize) {
+    let assembly = iterations as f64 * one_assembly;
+    let times = [
+        ("setup_s", setup),
+        ("assembly_s", assembly),
+        ("solve_s", run - assembly),
+        ("run_s", run),
+        ("total_s", setup + run),
+        ("per_it_ms", run / iterations as f64 * 1e3),
+        ("per_it_asm_ms", one_assembly * 1e3),
+    ];
+    for (name, value) in times {
+        line[name] = json!(value);
+    }
+}
+
+/// Seconds of each stage of the compiler, for the file of a model or for a shipped model by the name of its folder.
 ///
 /// # Errors
 /// What the compiler says about the model.
-pub fn compiler(file: &Path) -> Result<Value, String> {
-    let mut line = json!({ "problem": "compile", "model": file.display().to_string(), "peer": "ansatz" });
+pub fn compiler(model: &str) -> Result<Value, String> {
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models").join(model).join("model.ansatz");
+    let file = if shipped.exists() { &shipped } else { Path::new(model) };
+    let mut line = json!({ "problem": "compile", "kind": model, "peer": "ansatz" });
     let times = stages(file)?;
     line["total_s"] = json!(times.iter().map(|(_, seconds)| seconds).sum::<f64>());
     for (stage, seconds) in times {
@@ -126,17 +149,29 @@ pub fn compiler(file: &Path) -> Result<Value, String> {
     Ok(line)
 }
 
-/// A whole run of the dry model to a time \[s\].
+/// A run of the dry model on about so many triangles to a time \[s\].
+///
+/// # Errors
+/// If the run fails.
+pub fn dry_on(elements: usize, until: f64) -> Result<Value, String> {
+    let mut coarse = 1.0;
+    for _ in 0..CORRECTIONS {
+        let cells = prepare_dry(coarse)?.system().mesh.cells.len();
+        // Twice the size of the cells makes about a quarter of them; less where short boundaries ask for small ones.
+        coarse *= (cells as f64 / elements as f64).sqrt();
+    }
+    dry(until, coarse)
+}
+
+/// A run of the dry model to a time \[s\], its cells `coarse` times as large as the model's.
 ///
 /// # Errors
 /// If the run fails.
 pub fn dry(until: f64, coarse: f64) -> Result<Value, String> {
     struct Quiet;
     impl Observer for Quiet {}
-    use ansatz_models::dry_contact;
     let clock = Clock::start();
-    let parameters = dry_contact::Parameters { coarse, ..Default::default() };
-    let mut simulation = dry_contact::simulation(&parameters).map_err(|e| e.to_string())?;
+    let mut simulation = prepare_dry(coarse)?;
     let setup = clock.seconds();
     let clock = Clock::start();
     let outcome = simulation.run(&mut Quiet, Some(until)).map_err(|e| e.to_string())?;
@@ -144,10 +179,15 @@ pub fn dry(until: f64, coarse: f64) -> Result<Value, String> {
     let statistics = simulation.record().statistics();
     let system = simulation.system();
     Ok(json!({
-        "problem": "dry", "peer": "ansatz", "n_elements": system.mesh.cells.len(), "n_dofs": system.equation_count(),
-        "matrix_entries": system.matrix_entries(), "until": until, "outcome": outcome,
+        "problem": "model", "kind": "dry", "peer": "ansatz", "n_elements": system.mesh.cells.len(),
+        "n_dofs": system.equation_count(), "matrix_entries": system.matrix_entries(), "until": until, "outcome": outcome,
         "reached": simulation.record().times().last(), "steps": statistics.accepted, "rejected": statistics.rejected,
         "total_its": statistics.iterations, "setup_s": setup, "run_s": run, "total_s": setup + run,
         "per_it_ms": run / statistics.iterations as f64 * 1e3,
     }))
+}
+
+fn prepare_dry(coarse: f64) -> Result<Simulation, String> {
+    let parameters = dry_contact::Parameters { coarse, ..Default::default() };
+    dry_contact::simulation(&parameters).map_err(|e| e.to_string())
 }

@@ -11,6 +11,7 @@
 //! | `07_cavity` | [`lid_driven_cavity`] | a pressure without a level |
 //! | `08_squeeze_film` | [`squeeze_film`] | a fluid between bodies that move |
 //! | `09_sphere_near_wall` | [`sphere_near_wall`] | two regions of one fluid, cells of very different size |
+//! | `10_flag` | [`flag_in_flow`] | a body in a stream that bends it, an event that ends a run at rest |
 
 use ansatz::generated::Program;
 
@@ -23,9 +24,10 @@ ansatz::include_model!("../06_cylinder_flow/model.ansatz");
 ansatz::include_model!("../07_cavity/model.ansatz");
 ansatz::include_model!("../08_squeeze_film/model.ansatz");
 ansatz::include_model!("../09_sphere_near_wall/model.ansatz");
+ansatz::include_model!("../10_flag/model.ansatz");
 
 /// All examples, in order.
-pub static PROGRAMS: [&Program; 9] = [
+pub static PROGRAMS: [&Program; 10] = [
     &pressed_block::PROGRAM,
     &cooks_membrane::PROGRAM,
     &relaxation::PROGRAM,
@@ -35,4 +37,5 @@ pub static PROGRAMS: [&Program; 9] = [
     &lid_driven_cavity::PROGRAM,
     &squeeze_film::PROGRAM,
     &sphere_near_wall::PROGRAM,
+    &flag_in_flow::PROGRAM,
 ];

@@ -231,8 +231,8 @@ impl<'m> Lowering<'m> {
         Ok(Value::from_components(&values))
     }
 
-    /// Where a value at a point is looked up: in all regions, or where fields in it live on paths only or it has derivatives along a path, on
-    /// the paths that carry all its fields.
+    /// Where a value at a point is looked up: in the regions that carry all its fields, or where one of them lives on paths only or it has
+    /// derivatives along a path, on the paths that do.
     fn around_points(&self, of: &'m Expr, span: Span) -> Lowered<Region> {
         let model = self.model;
         let (mut fields, mut along) = (BTreeSet::new(), false);
@@ -244,13 +244,19 @@ impl<'m> Lowering<'m> {
         let in_cells = |field: &FieldId| {
             model.fields[field.0].domain.pieces.iter().any(|piece| matches!(piece, Piece::Region(_)))
         };
-        if !along && fields.iter().all(in_cells) {
-            return Ok(Region::Cells((0..model.geometry.regions.len()).map(RegionId).collect()));
-        }
         let carries_all = |piece: &Piece| {
             let domain = Domain { pieces: vec![*piece], current: false, span };
             fields.iter().all(|field| model.without(&model.fields[field.0], &domain).is_none())
         };
+        if !along && fields.iter().all(in_cells) {
+            let regions = (0..model.geometry.regions.len()).map(RegionId);
+            let regions: Vec<RegionId> =
+                regions.filter(|&region| carries_all(&Piece::Region(region))).collect();
+            if regions.is_empty() {
+                return Err(unsupported(span, "no region carries all the fields of this value"));
+            }
+            return Ok(Region::Cells(regions));
+        }
         let labelled = |(path, definition): (usize, &crate::model::Path)| {
             let labels =
                 definition.segments.iter().enumerate().filter(|(_, segment)| segment.label.is_some());

@@ -3,7 +3,6 @@
 use super::Mesh;
 use super::quality::{jacobian, position};
 use ansatz_geometry::{Point, point};
-use std::ops::Range;
 
 /// Newton steps to invert a cell's map; it converges quadratically and cells are only slightly curved.
 const STEPS: usize = 12;
@@ -30,7 +29,7 @@ impl Mesh {
 
 impl<'m> Locator<'m> {
     /// Sorts some cells of a mesh into a grid with about as many squares as cells.
-    pub fn new(mesh: &'m Mesh, among: Range<usize>) -> Self {
+    pub fn new(mesh: &'m Mesh, among: impl IntoIterator<Item = usize>) -> Self {
         let [low, high] = point::bounds(&mesh.nodes);
         let (width, height) = (high[0] - low[0], high[1] - low[1]);
         let side = (width * height / mesh.cells.len().max(1) as f64).sqrt();

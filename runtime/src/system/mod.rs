@@ -133,7 +133,7 @@ impl System {
             .map(|f| FunctionalOn::new(f, &mesh, &unknowns, &g))
             .collect::<Result<_, _>>()?;
         let pairs = contact::prepare(program, &mesh, &g)?;
-        let observables = observables::prepare(program, &mesh, &unknowns, &g)?;
+        let observables = observables::prepare(program, &mesh, &unknowns, &ties, &g)?;
         let symmetric = in_the_matrix(&terms, &functionals).all(|t| t.integral.symmetric)
             && !pairs.iter().any(PairOn::is_loaded)
             && ties.is_empty();

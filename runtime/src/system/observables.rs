@@ -5,6 +5,7 @@ use super::place::Place;
 use super::point::{Sampler, locate, node_places};
 use super::sides::{SidePoint, side_points};
 use super::terms::{At, Term};
+use super::ties::{Tied, bearer};
 use super::unknowns::{Unknowns, domain_nodes};
 use crate::error::Error;
 use crate::generated::{Observable, ObservableKind, PairValue, Program, Sides};
@@ -69,6 +70,7 @@ impl ObservableOn {
         observable: &'static Observable,
         mesh: &Mesh,
         unknowns: &Unknowns,
+        ties: &[Tied],
         g: &[f64],
     ) -> Result<Self, Error> {
         let extreme =
@@ -78,7 +80,10 @@ impl ObservableOn {
             ObservableKind::Force { block, domain, field, component } => {
                 let nodes = domain_nodes(mesh, *domain)?;
                 let unknown = |node: u32| unknowns.fields[*field].unknown(node as usize, *component);
-                let unknowns = nodes.into_iter().filter_map(unknown).collect();
+                let mut unknowns: Vec<usize> =
+                    nodes.into_iter().filter_map(unknown).map(|unknown| bearer(ties, unknown)).collect();
+                unknowns.sort_unstable();
+                unknowns.dedup();
                 return Ok(Self::Force { block: *block, unknowns });
             }
             ObservableKind::Integral(integrals) => Value::Integrals(
@@ -144,7 +149,8 @@ pub fn prepare(
     program: &'static Program,
     mesh: &Mesh,
     unknowns: &Unknowns,
+    ties: &[Tied],
     g: &[f64],
 ) -> Result<Vec<ObservableOn>, Error> {
-    program.observables.iter().map(|o| ObservableOn::new(program, o, mesh, unknowns, g)).collect()
+    program.observables.iter().map(|o| ObservableOn::new(program, o, mesh, unknowns, ties, g)).collect()
 }

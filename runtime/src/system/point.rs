@@ -106,8 +106,7 @@ const MISSED: f64 = 0.05;
 pub fn locate(mesh: &Mesh, domain: Domain, x: [f64; 2]) -> Result<Place, Error> {
     let outside = |of: &str| Error::Model(format!("the point ({}, {}) lies {of}", x[0], x[1]));
     let Domain::Edges(paths) = domain else {
-        let cells = if moves(mesh, domain) { mesh.body_cells..mesh.cells.len() } else { 0..mesh.body_cells };
-        let found = Locator::new(mesh, cells).locate(x);
+        let found = Locator::new(mesh, cells_of(mesh, domain)?).locate(x);
         let (cell, local) = found.ok_or_else(|| outside("outside the mesh"))?;
         return Ok(Place::in_cell(mesh, cell, local));
     };
@@ -124,12 +123,6 @@ pub fn locate(mesh: &Mesh, domain: Domain, x: [f64; 2]) -> Result<Place, Error> 
         .filter(|(missed, ..)| *missed < MISSED)
         .ok_or_else(|| outside(&format!("beside `{}`", paths.join(", "))))?;
     Ok(Place::on_edge(mesh, edge, s))
-}
-
-/// Whether the cells of a domain are those of a moving region.
-fn moves(mesh: &Mesh, domain: Domain) -> bool {
-    let Domain::Cells(regions) = domain else { return false };
-    regions.iter().any(|region| mesh.region_cells(region).start >= mesh.body_cells)
 }
 
 /// Distance of a point from an edge as a part of the edge's length, and the parameter of the closest point: Gauss-Newton from the chord.

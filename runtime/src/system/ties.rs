@@ -50,6 +50,11 @@ pub fn tied_unknowns(program: &Program, mesh: &Mesh, unknowns: &Unknowns) -> Res
     Ok(ties)
 }
 
+/// The unknown in whose row stands what acts on `unknown`: its partner where it is tied (`ties` as of [`tied_unknowns`]), else itself.
+pub fn bearer(ties: &[Tied], unknown: usize) -> usize {
+    ties.binary_search_by_key(&unknown, |tied| tied.unknown).map_or(unknown, |k| ties[k].partner)
+}
+
 /// The body's node that a node of a moving region lies on; any other node itself.
 fn body_node(mesh: &Mesh, node: u32) -> u32 {
     mesh.links.binary_search_by_key(&node, |link| link[0]).map_or(node, |k| mesh.links[k][1])

@@ -6,6 +6,7 @@
 mod geometry;
 mod laws;
 mod reach;
+mod settings;
 mod test;
 
 use crate::diagnostic::{Code, Diagnostic, Sink};
@@ -54,6 +55,7 @@ fn values_of(
 pub fn check(forms: &mut Forms<'_>, sink: &mut Sink) {
     let parameters = defaults(&mut forms.lowering);
     check_bounds(forms, &parameters, sink);
+    settings::check(forms, &parameters, sink);
     geometry::check(forms, &parameters, sink);
     laws::check(&mut forms.lowering, &parameters, sink);
     reach::check(forms, &parameters, sink);

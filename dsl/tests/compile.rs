@@ -150,6 +150,39 @@ fn what_cannot_act_on_a_pair_is_refused_by_name() {
     );
 }
 
+/// What is said of the unit square with these items, which have faults that only numbers show.
+fn said(items: &str) -> String {
+    let rest = "field T: Temperature in P1 on square = 300 K;\nphysics heat { residual test(T)*dt(T)*1 [J/(m^3*K)] on square; }\n";
+    let compilation = compiled("square.ansatz", &on_square(&format!("{rest}{items}")));
+    render(&compilation.diagnostics, &compilation.sources)
+}
+
+#[test]
+fn settings_with_which_no_run_can_start_are_refused() {
+    let settings = "param n = 0;\nmesh { size = n*1 m on rim.top;  growth = 0.9;  quality = 2; }\n\
+        solve { time = 1 s .. 0 s;  step = euler(max: -1 s, min: 0 s, tolerance: 0);  nonlinear = newton(iterations: 0); }";
+    insta::assert_snapshot!("settings_out_of_range", said(settings));
+}
+
+#[test]
+fn paths_that_miss_what_they_are_to_be_attached_to_are_warned_of() {
+    let wires = "geometry {\n\
+        path beside   = from (1.005 m, 0.25 m) line to (2 m, 0.25 m);\n\
+        path across   = from (0.5 m, 0.5 m) line to (2 m, 0.5 m);\n\
+        path attached = from (1 m, 1 m) line to (2 m, 1 m);\n}";
+    insta::assert_snapshot!("loose_ends", said(wires));
+}
+
+#[test]
+fn regions_that_are_open_or_interpenetrate_are_refused() {
+    let open = "geometry { path wall = from (0, 0) line left to (0, -1 m) line floor to (1 m, -1 m) line right to (1 m, -0.05 m);\n\
+        region cavity = loop(rim.bottom, wall); }";
+    insta::assert_snapshot!("open_cavity", said(open));
+    let ball = "geometry { path skin = from (0.5 m, 0.9 m) arc about (0.5 m, 1.2 m) ccw to (0.5 m, 1.5 m) arc about (0.5 m, 1.2 m) ccw to (0.5 m, 0.9 m);\n\
+        region ball = loop(skin); }";
+    insta::assert_snapshot!("interpenetrating", said(ball));
+}
+
 #[test]
 fn a_force_that_ends_in_a_jump_warns_with_the_numbers() {
     let film = |d_0: &str| {

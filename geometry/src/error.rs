@@ -122,85 +122,81 @@ impl std::error::Error for GeometryError {}
 
 impl fmt::Display for GeometryError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.fault())?;
+        self.advice().map_or(Ok(()), |advice| write!(f, "; {advice}"))
+    }
+}
+
+impl GeometryError {
+    /// What is wrong, and where.
+    pub fn fault(&self) -> String {
         use GeometryError as E;
         match self {
-            E::EndOffCircle { name, centre, radius, to, reached } => write!(
-                f,
-                "arc `{name}` does not reach its end: {} is {reached} from the centre {}, its start {radius}; \
-                 give an end on that circle, e.g. polar(centre, radius, angle)",
+            E::EndOffCircle { name, centre, radius, to, reached } => format!(
+                "arc `{name}` does not reach its end: {} is {} from the centre {}, its start {}",
                 At(to),
-                At(centre)
+                short(*reached),
+                At(centre),
+                short(*radius)
             ),
-            E::CirclesApart { circles: [a, b], apart } => write!(
-                f,
-                "the circles about {} with radius {} and about {} with radius {} do not meet: their centres are \
-                 {apart} apart; change a radius or a centre",
+            E::CirclesApart { circles: [a, b], apart } => format!(
+                "the circles about {} with radius {} and about {} with radius {} do not meet: their centres are {apart} apart",
                 At(&a.0),
                 a.1,
                 At(&b.0),
                 b.1
             ),
-            E::NotFinite { name, from, to } => write!(
-                f,
-                "`{name}` from {} to {} is not made of finite numbers; check the parameters in its sqrt, acos and \
-                 divisions",
-                At(from),
-                At(to)
-            ),
-            E::ZeroLength { name, at } => {
-                write!(
-                    f,
-                    "`{name}` has no length: it starts and ends at {}; remove it or move an end",
-                    At(at)
-                )
+            E::NotFinite { name, from, to } => {
+                format!("`{name}` from {} to {} is not made of finite numbers", At(from), At(to))
             }
-            E::NegativeRadius { name, r } => write!(
-                f,
-                "`{name}` crosses the axis: it reaches r = {r}; keep it at r >= 0 in an axisymmetric model"
-            ),
-            E::BrokenPath { path, gap } => {
-                write!(f, "path `{path}` is broken: {gap}; start each segment where the one before it ends")
-            }
+            E::ZeroLength { name, at } => format!("`{name}` has no length: it starts and ends at {}", At(at)),
+            E::NegativeRadius { name, r } => format!("`{name}` crosses the axis: it reaches r = {r}"),
+            E::BrokenPath { path, gap } => format!("path `{path}` is broken: {gap}"),
             E::UnknownPart { region, part } => {
-                write!(f, "the loop of region `{region}` names `{part}`, which is no path or path.label")
+                format!("the loop of region `{region}` names `{part}`, which is no path or path.label")
             }
-            E::NoAxis { region } => write!(
-                f,
-                "the loop of region `{region}` uses `axis`, but the model is not axisymmetric; name a path instead"
-            ),
-            E::NotClosed { region, gap, on_axis } => {
-                let remedy = match on_axis {
-                    true => "add `axis` to the loop",
-                    false => "let both share one point, or add the path between them",
-                };
-                write!(f, "the loop of region `{region}` is not closed: {gap}; {remedy}")
+            E::NoAxis { region } => {
+                format!("the loop of region `{region}` uses `axis`, but the model is not axisymmetric")
             }
-            E::Branch { region, names, at } => write!(
-                f,
-                "the loop of region `{region}` branches at {}, where `{}` meet; list the parts of one closed loop",
+            E::NotClosed { region, gap, .. } => format!("the loop of region `{region}` is not closed: {gap}"),
+            E::Branch { region, names, at } => format!(
+                "the loop of region `{region}` branches at {}, where `{}` meet",
                 At(at),
                 names.join("`, `")
             ),
-            E::Crossing { names: [a, b], at } if a == b => {
-                write!(f, "`{a}` crosses itself at {}; keep it simple", At(at))
+            E::Crossing { names: [a, b], at } if a == b => format!("`{a}` crosses itself at {}", At(at)),
+            E::Crossing { names: [a, b], at } => format!("`{a}` and `{b}` cross at {}", At(at)),
+            E::Coincident { names: [a, b], at } => {
+                format!("`{a}` and `{b}` run along each other near {}", At(at))
             }
-            E::Crossing { names: [a, b], at } => write!(
-                f,
-                "`{a}` and `{b}` cross at {}; move one of them, or split both there so that they share an end point",
-                At(at)
-            ),
-            E::Coincident { names: [a, b], at } => write!(
-                f,
-                "`{a}` and `{b}` run along each other near {}; use one path for both regions there",
-                At(at)
-            ),
-            E::Overlap { regions: [a, b], at } => write!(
-                f,
-                "regions `{a}` and `{b}` overlap, e.g. at {}; add the inner one's paths to the loop of the outer one, \
-                 or drop one region",
-                At(at)
-            ),
+            E::Overlap { regions: [a, b], at } => {
+                format!("regions `{a}` and `{b}` overlap, e.g. at {}", At(at))
+            }
         }
+    }
+
+    /// What to do about it, where that is not plain.
+    pub fn advice(&self) -> Option<&'static str> {
+        use GeometryError as E;
+        Some(match self {
+            E::EndOffCircle { .. } => "give an end on that circle, e.g. polar(centre, radius, angle)",
+            E::CirclesApart { .. } => "change a radius or a centre",
+            E::NotFinite { .. } => "check the parameters in its sqrt, acos and divisions",
+            E::ZeroLength { .. } => "remove it or move an end",
+            E::NegativeRadius { .. } => "keep it at r >= 0 in an axisymmetric model",
+            E::BrokenPath { .. } => "start each segment where the one before it ends",
+            E::UnknownPart { .. } => return None,
+            E::NoAxis { .. } => "name a path instead",
+            E::NotClosed { on_axis: true, .. } => "add `axis` to the loop",
+            E::NotClosed { .. } => "let both share one point, or add the path between them",
+            E::Branch { .. } => "list the parts of one closed loop",
+            E::Crossing { names: [a, b], .. } if a == b => "keep it simple",
+            E::Crossing { .. } => "move one of them, or split both there so that they share an end point",
+            E::Coincident { .. } => "use one path for both regions there",
+            E::Overlap { .. } => {
+                "add the inner one's paths to the loop of the outer one, or move or drop one region"
+            }
+        })
     }
 }
 
@@ -221,7 +217,7 @@ impl fmt::Display for Gap {
 }
 
 /// A position with six significant digits.
-struct At<'a>(&'a Point);
+pub(crate) struct At<'a>(pub &'a Point);
 
 impl fmt::Display for At<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

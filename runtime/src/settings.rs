@@ -90,6 +90,25 @@ pub fn time(program: &Program, text: &str) -> Result<f64, Error> {
     }
 }
 
+/// Refuses an end of a run outside the time `(start, end)` of a model \[internal time\].
+///
+/// # Errors
+/// [`Error::Parameter`] with the times in seconds.
+pub fn check_end(program: &Program, (start, end): (f64, f64), until: f64) -> Result<(), Error> {
+    if start < until && until <= end {
+        return Ok(());
+    }
+    let seconds = |t: f64| format!("{} s", display(t * scale(program, Dimension::TIME)));
+    Err(Error::Parameter(if start == end {
+        String::from("the run cannot be ended by `--until`: the model is solved once, it has no time")
+    } else {
+        let [start, end, until] = [start, end, until].map(seconds);
+        format!(
+            "the run cannot end at {until}: its time is {start} .. {end}; give one within, or change `time` in `solve`"
+        )
+    }))
+}
+
 fn find(program: &Program, name: &str) -> Result<usize, Error> {
     if let Some(index) = program.parameters.iter().position(|p| p.name == name) {
         return Ok(index);

@@ -6,7 +6,7 @@ use crate::observer::Both;
 use crate::output::progress::{Progress, with_unit};
 use crate::output::results::Results;
 use crate::output::summary::Run;
-use crate::settings::{display, resolve, split, time};
+use crate::settings::{check_end, display, resolve, split, time};
 use crate::simulation::Simulation;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use std::fmt::Write as _;
@@ -103,6 +103,9 @@ fn run(program: &'static Program, matches: &ArgMatches) -> Result<(), Error> {
     let folder = matches.get_one::<String>("out").map_or_else(|| default_folder(program), PathBuf::from);
     let started = Instant::now();
     let mut simulation = Simulation::new(program, &values)?;
+    if let Some(until) = until {
+        check_end(program, simulation.span(None), until)?;
+    }
     let mut results = Results::create(&folder, program)?;
     results.keep_frames(!matches.get_flag("no-frames"));
     let outcome = if matches.get_flag("quiet") {

@@ -49,6 +49,7 @@ fn wrong_parameters_are_refused_by_name() {
     refused(CRUSHED, &["--set", "fine=3"], &["`fine` = 3 is not one of 1, 2, 4"], 2);
     refused(CRUSHED, &["--set", "w"], &["write NAME=VALUE"], 2);
     refused(CRUSHED, &["--until", "3"], &["`3` is no time", "write it with a unit"], 2);
+    refused(CRUSHED, &["--until", "3600 s"], &["cannot end at 3600 s", "its time is 0 s .. "], 2);
 }
 
 #[test]

@@ -87,6 +87,42 @@ pub(super) fn check(model: &Model, sources: &SourceMap, sink: &mut Sink) {
         sink.push(idle_equation(model, &system.equations[at], &count, undetermined.is_empty(), sources));
     }
     fields(model, sink);
+    unvaried(model, &system, sink);
+}
+
+/// Energies and loads in which nothing varies: without a field, and with states that equations determine.
+fn unvaried(model: &Model, system: &System, sink: &mut Sink) {
+    for statement in model.blocks.iter().flat_map(|block| &block.statements) {
+        let (e, what) = match &statement.kind {
+            // The measure of a moved path varies by itself.
+            StatementKind::Energy(_, Some(domain)) if domain.current => continue,
+            StatementKind::Energy(e, _) => (e, "in this energy"),
+            StatementKind::Load(e, ..) => (e, "that this load works on"),
+            StatementKind::Residual(..)
+            | StatementKind::Hold(..)
+            | StatementKind::Tie(..)
+            | StatementKind::Equation(..) => continue,
+        };
+        let mut varies = false;
+        deep(model, e, &mut |e| {
+            varies |= matches!(e.kind, ExprKind::Field(_) | ExprKind::Gap(_) | ExprKind::PairNormal(_));
+        });
+        let mut states = BTreeSet::new();
+        states_in(model, e, &mut states, &mut BTreeSet::new());
+        if varies || states.iter().any(|id| system.matched[id.0].is_none()) {
+            continue;
+        }
+        let mut diagnostic =
+            Diagnostic::error(Code::TooManyEquations, e.span, format!("nothing {what} can vary"));
+        for id in states {
+            let Some(at) = system.matched[id.0] else { continue };
+            let text = format!("this determines `{}` already", model.states[id.0].name);
+            diagnostic = diagnostic.label(system.equations[at].span, text);
+        }
+        sink.push(diagnostic.help(
+            "energies and loads vary fields, and numbers made from them such as `mean(u.y on D)`; what acts on a state stands in its equation",
+        ));
+    }
 }
 
 fn counted(n: usize, one: &str, many: &str) -> String {

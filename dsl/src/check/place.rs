@@ -145,7 +145,7 @@ impl<'m> Placer<'m, '_> {
                 }
                 StatementKind::Tie(tie, domain) => {
                     for field in [tie.field, tie.partner] {
-                        self.field_on(&self.model.fields[field.0], domain, statement.span, None);
+                        self.tied_on(&self.model.fields[field.0], domain, statement.span);
                     }
                 }
                 StatementKind::Equation(a, b) => self.all([a, b], Context::GLOBAL),
@@ -390,6 +390,23 @@ impl<'m> Placer<'m, '_> {
             let message = format!("field `{}` does not exist on {}", field.name, self.piece(piece));
             self.missing(place, inner.unwrap_or(place), domain, message);
         }
+    }
+
+    /// Both fields of a tie exist on its surface, such as that between a fluid and a body.
+    fn tied_on(&mut self, field: &Field, domain: &Domain, place: Span) {
+        let Some(piece) = self.model.without(field, domain) else { return };
+        let (name, here) = (&field.name, self.piece(piece));
+        let lives: Vec<String> = field.domain.pieces.iter().map(|piece| self.piece(*piece)).collect();
+        let lives = lives.join(", ");
+        let message = format!("field `{name}` cannot be tied on {here}, where it does not exist");
+        self.sink.push(
+            Diagnostic::error(Code::NotOnDomain, place, message)
+                .label(domain.span, "it is needed here")
+                .label(field.span, format!("`{name}` lives on {lives}"))
+                .help(format!(
+                    "a tie joins two fields where both exist: {here} does not bound what `{name}` lives on"
+                )),
+        );
     }
 
     fn piece(&self, piece: Piece) -> String {

@@ -61,6 +61,7 @@ codes! {
     NothingToReplace = "N012", "`replace` and `drop` need something of that name in the base";
     NotConstant = "N013", "the value must be known before the run";
     NeedsRun = "N014", "the value belongs to a run or to one time of it";
+    BadSetting = "N015", "the setting cannot have this value";
 
     DimensionMismatch = "U101", "both sides need the same dimension";
     NotANumber = "U102", "the function takes a pure number";
@@ -91,6 +92,7 @@ codes! {
     EmptyPatch = "G303", "a path or region has no extent";
     BadRange = "G304", "the parameter range changes the topology";
     BadPair = "G305", "a contact pair joins two separate surfaces";
+    LooseEnd = "G306", "a path meets another one without a shared point";
 
     Failed = "T401", "an expectation does not hold";
     Discontinuous = "T402", "the pieces of a `match` do not meet";

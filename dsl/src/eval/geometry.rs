@@ -8,7 +8,10 @@ use crate::lower::piece_name;
 use crate::model::{self, Frame, Model, Piece};
 use crate::scalar::Id;
 use crate::source::Span;
-use ansatz_geometry::{Geometry, GeometryError, LoopPart, PathBuilder, Region, Turn};
+use ansatz_geometry::{Doubt, Geometry, GeometryError, LoopPart, PathBuilder, Region, Turn};
+
+/// What the geometry is judged by.
+const DEFAULTS: &str = "with the default parameters";
 
 /// Builds the geometry and reports what is wrong with it, on the path or region.
 pub(super) fn check(forms: &Forms<'_>, parameters: &[f64], sink: &mut Sink) {
@@ -31,10 +34,35 @@ pub(super) fn check(forms: &Forms<'_>, parameters: &[f64], sink: &mut Sink) {
     if errors.is_empty() {
         errors = geometry.check();
     }
-    for error in errors {
-        let diagnostic = Diagnostic::error(code(&error), span(model, &error), error.to_string());
-        sink.push(diagnostic.here("with the default parameters"));
+    if errors.is_empty() {
+        geometry.doubts().iter().for_each(|doubt| sink.push(doubtful(model, doubt)));
     }
+    for error in errors {
+        let mut diagnostic =
+            Diagnostic::error(code(&error), span(model, &error), error.fault()).here(DEFAULTS);
+        if let Some(other) = second(model, &error) {
+            diagnostic = diagnostic.label(other, "the other one");
+        }
+        sink.push(error.advice().into_iter().fold(diagnostic, Diagnostic::help));
+    }
+}
+
+/// Warns of a path that may not be attached as it is meant to be.
+fn doubtful(model: &Model, doubt: &Doubt) -> Diagnostic {
+    let diagnostic =
+        Diagnostic::warning(Code::LooseEnd, named(model, doubt.path()), doubt.to_string()).here(DEFAULTS);
+    let (diagnostic, other) = match doubt {
+        Doubt::LooseEnd { other, .. } | Doubt::Crossing { other, .. } => (
+            diagnostic.label(named(model, other), "the other one"),
+            other.split('.').next().unwrap_or_default(),
+        ),
+        Doubt::EndInside { region, .. } => {
+            (diagnostic.label(named(model, region), "the region"), region.as_str())
+        }
+    };
+    diagnostic.help(format!(
+        "paths are joined where both have an end of a segment: divide a path of `{other}` there and use the same point for both"
+    ))
 }
 
 fn build(
@@ -98,6 +126,24 @@ fn span(model: &Model, error: &GeometryError) -> Span {
         E::Overlap { regions, .. } => &regions[0],
         E::CirclesApart { .. } => "",
     };
+    named(model, name)
+}
+
+/// Where the second thing that an error names is declared.
+fn second(model: &Model, error: &GeometryError) -> Option<Span> {
+    use GeometryError as E;
+    match error {
+        E::Crossing { names: [a, b], .. } | E::Coincident { names: [a, b], .. } if a != b => {
+            Some(named(model, b))
+        }
+        E::Overlap { regions: [_, b], .. } => Some(named(model, b)),
+        E::NotClosed { gap, .. } => gap.to.as_ref().map(|(name, _)| named(model, name)),
+        _ => None,
+    }
+}
+
+/// Where `path`, `path.label` or a region is declared.
+fn named(model: &Model, name: &str) -> Span {
     let path = name.split('.').next().unwrap_or_default();
     let paths = model.geometry.paths.iter().filter(|p| p.name == path).map(|p| p.span);
     let regions = model.geometry.regions.iter().filter(|r| r.name == *name).map(|r| r.span);

@@ -18,11 +18,12 @@ ansatz::include_model!("../models/balloon.ansatz");
 ansatz::include_model!("../models/cave_in.ansatz");
 ansatz::include_model!("../models/turek_csm1.ansatz");
 ansatz::include_model!("../models/filled_block.ansatz");
+ansatz::include_model!("../models/sheet.ansatz");
 
 use ansatz::generated::Program;
 
 /// All of them.
-pub static PROGRAMS: [&Program; 18] = [
+pub static PROGRAMS: [&Program; 19] = [
     &patch_plane::PROGRAM,
     &patch_axi::PROGRAM,
     &crushed::PROGRAM,
@@ -41,4 +42,5 @@ pub static PROGRAMS: [&Program; 18] = [
     &cave_in::PROGRAM,
     &turek_csm1::PROGRAM,
     &filled_block::PROGRAM,
+    &sheet::PROGRAM,
 ];

@@ -1,7 +1,7 @@
 //! Loads on the surfaces of contact pairs: the forces that they add up to, where they act, and what outputs say about them.
 
 use ansatz::generated::Program;
-use ansatz_tests::models::{film, plates};
+use ansatz_tests::models::{film, plates, sheet};
 use ansatz_tests::notes::Notes;
 use ansatz_tests::system;
 use std::f64::consts::PI;
@@ -92,4 +92,19 @@ fn forces_that_are_there_from_the_start_find_their_equilibrium() {
         // Newton's method converges quadratically with an exact tangent.
         assert!(statistics.iterations <= 5 * statistics.accepted.max(1), "{}: {statistics:?}", program.name);
     }
+}
+
+#[test]
+fn a_sheet_without_a_body_floats_where_the_repulsion_bears_what_presses_it() {
+    let values = sheet::Parameters::default().values();
+    let mut simulation = ansatz::Simulation::new(&sheet::PROGRAM, &values).expect("the model can be built");
+    let mut notes = Notes::default();
+    simulation.run(&mut notes, None).expect("it comes to rest");
+    let Some((_, row)) = notes.rows.last() else { panic!("a row for the state of rest") };
+    let [gap, above, below, moved] = row[..] else { panic!("four columns") };
+    // exp(-gap/d_0) = p/P_0; forces of 0.1 MPa on 2 mm^2.
+    assert_near(gap, 0.05 * 10.0_f64.ln(), 1e-7);
+    assert_near(above, 0.2, 1e-9);
+    assert_near(below, -0.2, 1e-7);
+    assert!(moved < 0.0, "the block gives way: {moved} mm");
 }

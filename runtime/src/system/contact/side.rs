@@ -67,7 +67,7 @@ impl Side {
 /// Edges `[start, end, middle]` of a surface with the body on their left, as chains of edges that follow each other.
 ///
 /// # Errors
-/// If a path has no edges, or edges that do not bound one body made of these regions.
+/// If a path has no edges, or edges with a body made of these regions on both sides.
 pub(super) fn chains(mesh: &Mesh, paths: &[&str], regions: &[&str]) -> Result<Vec<Vec<[usize; 3]>>, Error> {
     let in_body = |side: &CellEdge| {
         let region = mesh.cell_region[side.cell as usize] as usize;
@@ -79,7 +79,8 @@ pub(super) fn chains(mesh: &Mesh, paths: &[&str], regions: &[&str]) -> Result<Ve
         for edge in mesh.path_edges(path) {
             let [start, end, middle] = edge.nodes.map(|n| n as usize);
             match (edge.left.filter(in_body), edge.right.filter(in_body)) {
-                (Some(_), None) => edges.push([start, end, middle]),
+                // A path that bounds no body acts as if it had one on its left.
+                (Some(_), None) | (None, None) => edges.push([start, end, middle]),
                 (None, Some(_)) => edges.insert(0, [end, start, middle]),
                 _ => return Err(inner_surface(path)),
             }
@@ -104,6 +105,6 @@ fn append(chains: &mut Vec<Vec<[usize; 3]>>, edges: Vec<[usize; 3]>) {
 
 fn inner_surface(path: &str) -> Error {
     Error::Model(format!(
-        "the contact surface `{path}` has bodies on both sides or on none; a surface in contact bounds one body"
+        "the contact surface `{path}` has bodies on both sides; a surface in contact bounds at most one"
     ))
 }

@@ -6,6 +6,7 @@
 //! K + sum_j b_j (grad Z_j)^T, with b_j = sum_k (d c_k / d Z_j) grad Z_k + d R / d (states) . d (states) / d Z_j.
 
 mod balance;
+mod broyden;
 mod contact;
 mod convergence;
 mod elements;

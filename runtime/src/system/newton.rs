@@ -2,6 +2,7 @@
 
 use super::System;
 use super::balance::{Balance, norm};
+use super::broyden::Broyden;
 use super::contact::{Curvature, PairOn};
 use crate::error::{Cause, SolveError};
 use crate::solve::linear::{Definiteness, LinearError};
@@ -12,8 +13,8 @@ const HALVINGS: usize = 8;
 /// The line search accepts a step when |du . R| falls below this part of its start.
 const DECREASE: f64 = 0.9;
 
-/// Factors are kept for a further step while each step leaves less than this part of the residual.
-const CONTRACTION: f64 = 0.05;
+/// Factors are kept for a further step while each step leaves less than this part of the residual: five such steps take as long as new factors.
+const CONTRACTION: f64 = 0.5;
 /// A stage goes on beyond its iterations while each leaves less than this part of the residual.
 const CONVERGING: f64 = 0.1;
 /// How much stiffer the rates are made where the tangent has unstable modes, and how often at most.
@@ -71,6 +72,8 @@ struct Progress {
     scales: Vec<f64>,
     /// The last step made the residual so much smaller that the same factors will do again.
     keep_factors: bool,
+    /// Steps taken with these factors.
+    steps: Broyden,
     /// The last new tangent made the residual much smaller.
     converging: bool,
     /// Negative pivots of the last exact tangent.
@@ -114,6 +117,7 @@ impl System {
             current,
             scales: self.forces.clone(),
             keep_factors: usable.is_some(),
+            steps: Broyden::default(),
             converging: false,
             negative_pivots: usable.map_or(0, |f| f.negative_pivots),
             report: NewtonReport::default(),
@@ -146,7 +150,12 @@ impl System {
         progress.report.iterations += 1;
         let before = norm(&progress.current.residual);
         let slope = dot(&direction, &balance.residual);
-        progress.current = self.search(problem, &progress.current, &direction, slope)?;
+        let (length, reached) = self.search(problem, &progress.current, &direction, slope)?;
+        progress.current = reached;
+        progress.steps.clear();
+        if length == 1.0 {
+            progress.steps.push(direction);
+        }
         let contraction = norm(&progress.current.residual) / before;
         progress.keep_factors = contraction < CONTRACTION;
         progress.converging = contraction < CONVERGING;
@@ -157,14 +166,16 @@ impl System {
         Ok(self.converged(progress))
     }
 
-    /// A full step in the direction that the last factors give; taken, and tried again, if it makes the residual much smaller.
+    /// A full step in the direction that the last factors give with what was learned since; taken, and tried again, if it makes the residual much
+    /// smaller.
     fn step_with_old_factors(
         &mut self,
         problem: &StageProblem<'_>,
         progress: &mut Progress,
     ) -> Result<bool, Cause> {
         let Progress { current, .. } = progress;
-        let direction = self.solve_for(&current.residual)?;
+        let mut direction = self.solve_for(&current.residual)?;
+        progress.steps.correct(&mut direction);
         let trial = self.evaluate(problem, self.along(&current.y, &direction, 1.0));
         progress.keep_factors = false;
         let Ok(trial) = trial else { return Ok(false) };
@@ -173,6 +184,7 @@ impl System {
         }
         progress.keep_factors = true;
         progress.current = trial;
+        progress.steps.push(direction);
         Ok(true)
     }
 
@@ -256,17 +268,17 @@ impl System {
     }
 
     /// Goes along the direction as far as |du . R| falls from its start, `slope`. A symmetric tangent is that of an energy with the slope du . R: going
-    /// down it, the energy falls as long as that is negative, and only going past its minimum is going too far.
+    /// down it, the energy falls as long as that is negative, and only going past its minimum is going too far. The part of the way, and what is there.
     fn search(
         &mut self,
         problem: &StageProblem<'_>,
         current: &Iterate,
         direction: &[f64],
         slope: f64,
-    ) -> Result<Iterate, Cause> {
+    ) -> Result<(f64, Iterate), Cause> {
         let downhill = self.is_symmetric() && slope < 0.0;
         let mut length = 1.0;
-        let mut best: Option<(f64, Iterate)> = None;
+        let mut best: Option<(f64, (f64, Iterate))> = None;
         let mut cause = Cause::NotFinite;
         for _ in 0..=HALVINGS {
             match self.evaluate(problem, self.along(&current.y, direction, length)) {
@@ -275,17 +287,17 @@ impl System {
                     let work = if downhill { work } else { work.abs() };
                     let smaller = norm(&trial.residual) <= norm(&current.residual) * 1e-3;
                     if work <= DECREASE * slope.abs() || smaller {
-                        return Ok(trial);
+                        return Ok((length, trial));
                     }
                     if best.as_ref().is_none_or(|(least, _)| work < *least) {
-                        best = Some((work, trial));
+                        best = Some((work, (length, trial)));
                     }
                 }
                 Err(reason) => cause = reason,
             }
             length *= 0.5;
         }
-        best.map(|(_, iterate)| iterate).ok_or(cause)
+        best.map(|(_, reached)| reached).ok_or(cause)
     }
 
     /// The iterate at y with the held values of the stage.

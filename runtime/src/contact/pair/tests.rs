@@ -173,3 +173,30 @@ fn surfaces_that_share_an_edge_and_useless_radii_are_refused() {
     assert_eq!(pair([4, 6, 5], 0.1), Ok(()));
     assert_eq!(pair([4, 6, 5], 0.0), Err(ContactError::Radius { radius: 0.0 }));
 }
+
+/// Energy of a level slave, 0.8 wide, that overlaps a level master by `overlap`, where waves of height `wave` and length 0.4 stand on the master.
+fn energy_on_waves(overlap: f64, wave: f64) -> f64 {
+    let count = 65;
+    let ripple = |x: f64| wave * (x * std::f64::consts::TAU / 0.4).cos();
+    let mut positions: Vec<Point> =
+        (0..count).map(|i| 1.6 - 0.05 * i as f64).map(|x| [x, ripple(x)]).collect();
+    let master = smooth_curves(&(0..count).collect::<Vec<_>>(), false, false, &positions, CORNER).unwrap();
+    positions.extend([[-0.4, -overlap], [0.4, -overlap], [0.0, -overlap]]);
+    let points = (0..80).map(|k| SlavePoint::new(0, (k as f64 + 0.5) / 80.0, 1.0)).collect();
+    let edges = vec![[count, count + 1, count + 2]];
+    let mut pair = ContactPair::new(edges, points, master, (Partner::Facing, 1.0)).unwrap();
+    pair.update(&positions);
+    pair.energy(&penalty)
+}
+
+#[test]
+fn points_that_overlap_deeper_than_a_sixth_of_a_wave_drive_waves_on_the_master() {
+    // W changes by (1 - (2 pi g / length)^2) wave^2 / 4 for each point: crests are nearer to deep points than the level is
+    let length_over_two_pi = 0.4 / std::f64::consts::TAU;
+    let change = |overlap: f64| energy_on_waves(overlap, 1e-3) - energy_on_waves(overlap, 0.0);
+    for part in [0.5, 1.5] {
+        let expected = 80.0 * (1.0 - part * part) * 1e-6 / 4.0;
+        let found = change(part * length_over_two_pi);
+        assert!((found / expected - 1.0).abs() < 0.05, "{found} is not {expected}");
+    }
+}

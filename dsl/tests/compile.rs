@@ -113,6 +113,21 @@ fn what_kernels_cannot_do_is_refused_by_name() {
 }
 
 #[test]
+fn a_mesh_size_on_a_pair_reads_its_gap_and_needs_a_region_that_moves() {
+    let size = |size: &str| {
+        codes(&format!(
+            "field u: Vector[Length] in P2 on square = 0; param q = 1 Pa;
+             physics rest {{ energy q*dot(u, u)/(1 m^2) on square; }}
+             let film = pair(rim.left, rim.right, search: 2 m);
+             mesh {{ size = {size} on film; }}"
+        ))
+    };
+    assert_eq!(size("max(1 mm, film.gap/2)"), ["P005"], "nothing moves between them");
+    assert_eq!(size("film.gap*t/(1 s)"), ["N013"], "time");
+    assert_eq!(size("film.gap*q"), ["U103"], "no length");
+}
+
+#[test]
 fn what_cannot_act_on_a_pair_is_refused_by_name() {
     let model = "field u: Vector[Length] in P2 on square = 0; state s: Number = 0; param q = 1 Pa;
                  let film = pair(rim.left, rim.right, search: 2 m);\n\

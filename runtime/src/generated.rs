@@ -15,7 +15,9 @@ pub use crate::mesh::{MeshSizing, Place, SizeRule};
 pub use crate::simulation::Simulation;
 pub use crate::simulator::main;
 pub use crate::vectorize;
-pub use pair::{Pair, PairForce, PairForceRate, PairGlobalTangent, PairIntegral, PairLoad, PairValue, Sides};
+pub use pair::{
+    GapSize, Pair, PairForce, PairForceRate, PairGlobalTangent, PairIntegral, PairLoad, PairValue, Sides,
+};
 
 /// A simulation of a compiled model; `parameters` are all its parameters' values in its units.
 ///
@@ -67,6 +69,8 @@ pub struct Program {
     pub ties: &'static [Tie],
     /// Regions whose shape follows the bodies around them.
     pub moving: &'static [Moving],
+    /// Sizes of cells between surfaces.
+    pub gap_sizes: &'static [GapSize],
     /// Integrals that contribute to the balance of the fields.
     pub integrals: &'static [Integral],
     /// Contact pairs.
@@ -171,6 +175,8 @@ pub struct Field {
     pub domains: &'static [Domain],
     /// Display unit.
     pub unit: &'static str,
+    /// Its rates occur in the equations.
+    pub differential: bool,
     /// Start value of each component at a reference point.
     pub start: fn(x: [f64; 2], g: &[f64], out: &mut [f64]),
 }

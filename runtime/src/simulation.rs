@@ -1,8 +1,8 @@
 //! A compiled model with parameter values, ready to run: geometry, mesh, discretised system, run, record.
 
 use crate::error::{Cause, Error, SolveError};
-use crate::generated::{Program, Solve};
-use crate::mesh::{Follower, Mesh, MeshError, MeshSizing};
+use crate::generated::{GapSize, Program, Solve};
+use crate::mesh::{FilmSize, Follower, Mesh, MeshError, MeshSizing};
 use crate::observer::Observer;
 use crate::record::{End, RunRecord};
 use crate::settings;
@@ -11,6 +11,7 @@ use crate::time::integrator::Point;
 use crate::time::run::{Plan, run};
 use crate::time::{Group, ImplicitSystem, Stage};
 use ansatz_geometry::Geometry;
+use std::rc::Rc;
 
 #[cfg(test)]
 mod tests;
@@ -34,7 +35,7 @@ impl Simulation {
         let sizing = (program.sizing)(&g);
         let moving: Vec<&str> = program.moving.iter().map(|moving| moving.region).collect();
         let mut mesh = Mesh::generate_bodies(&geometry, &sizing, &moving).map_err(mesh_error)?;
-        let followers = followers(&geometry, &sizing, &moving)?;
+        let followers = followers(program, &geometry, &sizing, &g)?;
         let at_rest = mesh.nodes.clone();
         for follower in &followers {
             follower.attach(&mut mesh, &at_rest).map_err(mesh_error)?;
@@ -108,10 +109,27 @@ impl Simulation {
 }
 
 /// What meshes the moving regions of a geometry.
-fn followers(geometry: &Geometry, sizing: &MeshSizing, moving: &[&str]) -> Result<Vec<Follower>, Error> {
-    let index = |name: &&str| geometry.regions.iter().position(|region| region.name == **name);
-    let regions = moving.iter().filter_map(index);
-    regions.map(|region| Follower::new(geometry, region, sizing).map_err(mesh_error)).collect()
+fn followers(
+    program: &'static Program,
+    geometry: &Geometry,
+    sizing: &MeshSizing,
+    g: &[f64],
+) -> Result<Vec<Follower>, Error> {
+    let films: Vec<FilmSize> = program.gap_sizes.iter().map(|rule| film(program, rule, g)).collect();
+    let index = |name: &str| geometry.regions.iter().position(|region| region.name == name);
+    let regions = program.moving.iter().filter_map(|moving| index(moving.region));
+    let follower = |region| Follower::new(geometry, region, sizing, films.clone()).map_err(mesh_error);
+    regions.map(follower).collect()
+}
+
+/// A size between the surfaces of a pair; `g` has the parameters.
+fn film(program: &'static Program, rule: &'static GapSize, g: &[f64]) -> FilmSize {
+    let (pair, g) = (&program.pairs[rule.pair], g.to_vec());
+    FilmSize {
+        surfaces: [pair.first.to_vec(), pair.second.to_vec()],
+        at: [rule.sides.has(0), rule.sides.has(1)],
+        size: Rc::new(move |gap| (rule.size)(gap, [0.0; 2], [0.0; 2], &g)),
+    }
 }
 
 /// One sampler for each kind of frames.
@@ -136,10 +154,12 @@ struct Discretised {
 impl ImplicitSystem for Discretised {
     fn groups(&self) -> Vec<Group> {
         let unknowns = &self.system.unknowns;
+        let with_rates = |k: usize| self.system.program.fields[k].differential;
+        let all_follow = !(0..unknowns.fields.len()).any(with_rates);
         let fields = unknowns.fields.iter().enumerate().map(|(k, f)| Group {
             range: f.first..f.first + f.count(),
-            // What goes from mesh to mesh has errors of its own.
-            tested: !self.system.moves(k),
+            // What goes from mesh to mesh has errors of its own. Where no field has rates, steps follow how all of them change.
+            tested: !self.system.moves(k) && (with_rates(k) || all_follow),
         });
         let differential = self.system.program.state_system.as_ref().map_or(&[][..], |s| s.differential);
         let first = unknowns.states;

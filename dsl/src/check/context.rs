@@ -1,6 +1,6 @@
 //! What is known where: before the run, at one time, at the points of a domain, after the run.
 
-use crate::model::{Builtin, Domain, Expr, ExprKind};
+use crate::model::{Builtin, Domain, Expr, ExprKind, Piece};
 
 /// What an expression may be made of, beyond parameters and numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,6 +60,16 @@ impl Context<'_> {
         Context { known: &[Ingredient::Measure, Ingredient::Run], domain: None };
     /// The start of a state.
     pub(super) const START: Context<'static> = Context { known: &[Ingredient::Measure], domain: None };
+
+    /// Sizes of cells: on surfaces of a pair they may follow the gap.
+    pub(super) fn mesh_size(domain: Option<&Domain>) -> Context<'_> {
+        match domain {
+            Some(domain) if matches!(domain.pieces.first(), Some(Piece::Pair(..))) => {
+                Context { known: &[Ingredient::Gap], domain: Some(domain) }
+            }
+            _ => Context::CONSTANT,
+        }
+    }
 
     /// The start of a field.
     pub(super) fn field_start(domain: &Domain) -> Context<'_> {

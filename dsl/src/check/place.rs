@@ -108,10 +108,10 @@ impl<'m> Placer<'m, '_> {
             }
         }
         let mesh = &self.model.mesh;
-        self.all(
-            mesh.sizes.iter().map(|(size, _)| size).chain(&mesh.growth).chain(&mesh.quality),
-            Context::CONSTANT,
-        );
+        for (size, domain) in &mesh.sizes {
+            self.place(size, Context::mesh_size(domain.as_ref()));
+        }
+        self.all(mesh.growth.iter().chain(&mesh.quality), Context::CONSTANT);
         self.all(self.model.pairs.iter().map(|pair| &pair.search), Context::CONSTANT);
     }
 

@@ -24,7 +24,9 @@ pub fn domain(model: &Model, region: &Region, fields: impl IntoIterator<Item = F
 /// The entries of `Program::fields`.
 pub fn fields(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
     let (model, starts) = (forms.lowering.model, forms.starts.clone());
-    let entries = model.fields.iter().zip(&starts).map(|(field, start)| {
+    let with_rates = forms.differential_fields();
+    let entries = model.fields.iter().zip(&starts).enumerate().map(|(k, (field, start))| {
+        let differential = with_rates.contains(&FieldId(k));
         let (name, unit) = (&field.name, model.units.unit_of(field.dimension));
         let names: Vec<&str> = match field.shape {
             Shape::Scalar => vec![""],
@@ -42,6 +44,7 @@ pub fn fields(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
             space: #space,
             domains: &[#(#parts),*],
             unit: #unit,
+            differential: #differential,
             start: #start,
         })
     });

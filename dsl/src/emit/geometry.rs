@@ -3,6 +3,7 @@
 use super::body::{Sources, body, list};
 use super::expression::number;
 use super::layout::Slots;
+use super::pairs;
 use crate::form::Forms;
 use crate::form::settings::Path;
 use crate::lower::piece_name;
@@ -107,6 +108,18 @@ pub fn sizing(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
         let (growth, quality) = (&values[values.len() - 2], &values[values.len() - 1]);
         quote!(MeshSizing { rules: Vec::from([#(#rules),*]), growth: #growth, quality: #quality })
     })
+}
+
+/// The entries of `Program::gap_sizes`.
+pub fn gap_sizes(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
+    let sizes = forms.settings.mesh.gap_sizes.clone();
+    let entries = sizes.into_iter().map(|(size, pair, sides)| {
+        let (pair, sides) = (Literal::usize_unsuffixed(pair.0), pairs::sides(sides));
+        let size = pairs::value(&mut forms.lowering, slots, size);
+        quote!(GapSize { pair: #pair, sides: #sides, size: #size })
+    });
+    let entries: Vec<TokenStream> = entries.collect();
+    quote!(&[#(#entries),*])
 }
 
 fn place(model: &Model, piece: Piece) -> TokenStream {

@@ -129,7 +129,7 @@ fn program(forms: &mut Forms<'_>, plan: &Plan, sources: &SourceMap) -> TokenStre
     let (frames, tests) = (outputs::frames(forms, &slots), tests::tests(forms, &slots, sources));
     let (solve, weight) = (geometry::solve(forms, &slots), geometry::weight(model));
     let constants = constants(forms, &slots);
-    let geometry = geometry::geometry(forms, &slots);
+    let (gap_sizes, geometry) = (geometry::gap_sizes(forms, &slots), geometry::geometry(forms, &slots));
     let test_helpers = tests::helpers(forms, &slots);
     let (functions, basis) = (&emitted.functions, emitted.tables.tokens());
     let (helpers, no_variation) = (helpers::helpers(&plan.kernels()), emitted.no_variation());
@@ -146,6 +146,7 @@ fn program(forms: &mut Forms<'_>, plan: &Plan, sources: &SourceMap) -> TokenStre
             holds: #holds,
             ties: #ties,
             moving: #moving,
+            gap_sizes: #gap_sizes,
             integrals: &[#(#integrals),*],
             pairs: #contact_pairs,
             pair_integrals: #pair_integrals,

@@ -5,6 +5,7 @@
 //! - `physics`: the statements of the blocks; `pair`: those on contact pairs.
 //! - `states`: equations of states; `balance`: those that energies give.
 //! - `observe`: which scalars are rows of the system (functionals) and which are only looked at (observables).
+//! - `rates`: which fields have a history.
 //! - `settings`: what depends on parameters alone.
 //! - `output`, `event`, `expect`: tables, frames, events, run-time tests.
 
@@ -17,6 +18,7 @@ mod output;
 mod pair;
 mod physics;
 pub mod print;
+mod rates;
 pub mod settings;
 mod states;
 mod vary;

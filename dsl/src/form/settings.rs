@@ -1,9 +1,10 @@
 //! Everything that depends on parameters alone: defaults, bounds, geometry, mesh sizes, starts, the settings of the solution.
 
 use super::Builder;
-use crate::lower::{Lowered, Lowering, Value, internal};
-use crate::model::{self, Domain, Expr, Integrator, SegmentKind, Start, Turn};
-use crate::scalar::Id;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::lower::{Lowered, Lowering, SymbolKind, Value, internal, unsupported};
+use crate::model::{self, Domain, Expr, Integrator, PairId, Piece, SegmentKind, Sides, Start, Turn};
+use crate::scalar::{Id, symbols_of};
 
 /// A parameter.
 #[derive(Clone, Debug)]
@@ -57,6 +58,8 @@ pub struct Segment {
 #[allow(missing_docs)]
 pub struct Mesh {
     pub sizes: Vec<(Id, Option<Domain>)>,
+    /// Sizes on surfaces of pairs, functions of the gap.
+    pub gap_sizes: Vec<(Id, PairId, Sides)>,
     pub growth: Id,
     pub quality: Id,
 }
@@ -168,15 +171,45 @@ fn path<'m>(lowering: &mut Lowering<'m>, path: &'m model::Path) -> Lowered<Path>
 }
 
 fn mesh<'m>(lowering: &mut Lowering<'m>, mesh: &'m model::MeshSettings) -> Lowered<Mesh> {
-    let mut sizes = Vec::new();
+    let (mut sizes, mut gap_sizes) = (Vec::new(), Vec::new());
     for (size, domain) in &mesh.sizes {
-        sizes.push((lowering.global_scalar(size)?, domain.clone()));
+        let pieces = domain.as_ref().map_or(&[][..], |domain| &domain.pieces);
+        if let [Piece::Pair(..), ..] = pieces {
+            gap_sizes.extend(gap_size(lowering, size, pieces)?);
+        } else {
+            sizes.push((lowering.global_scalar(size)?, domain.clone()));
+        }
     }
     Ok(Mesh {
         sizes,
+        gap_sizes,
         growth: or_constant(lowering, mesh.growth.as_ref(), 1.25)?,
         quality: or_constant(lowering, mesh.quality.as_ref(), 0.3)?,
     })
+}
+
+/// A size on surfaces of pairs: what lies between them is meshed before anything else is known.
+fn gap_size<'m>(
+    lowering: &mut Lowering<'m>,
+    size: &'m Expr,
+    pieces: &[Piece],
+) -> Lowered<Vec<(Id, PairId, Sides)>> {
+    if lowering.model.moving.is_empty() {
+        let message = "a mesh size on a pair is for a region that moves between its surfaces, and none does";
+        let help = "say `moving D by u;`, or give sizes on the paths: `size = 0.1 um on nucleus + endo.rim;`";
+        return Err(Box::new(Diagnostic::error(Code::Misplaced, size.span, message).help(help)));
+    }
+    let mut sizes = Vec::new();
+    for piece in pieces {
+        let Piece::Pair(pair, sides) = *piece else { continue };
+        let id = lowering.scalar_on_pair(size, pair)?;
+        let normal = |symbol| matches!(lowering.symbols.kind(symbol), SymbolKind::PairNormal(..));
+        if symbols_of(&lowering.pool, &[id]).into_iter().any(normal) {
+            return Err(unsupported(size.span, "a mesh size that depends on the direction of a surface"));
+        }
+        sizes.push((id, pair, sides));
+    }
+    Ok(sizes)
 }
 
 fn or_constant<'m>(lowering: &mut Lowering<'m>, expr: Option<&'m Expr>, otherwise: f64) -> Lowered<Id> {

@@ -11,6 +11,16 @@ pub struct Pair {
     pub search: fn(g: &[f64]) -> f64,
 }
 
+/// `size = f(pair.gap) on pair`: upper bound on the size of the cells that touch these surfaces in regions that move.
+#[allow(missing_docs)]
+pub struct GapSize {
+    /// Index into the program's pairs.
+    pub pair: usize,
+    pub sides: Sides,
+    /// Of the gap and the parameters.
+    pub size: PairValue,
+}
+
 /// Which surfaces of a pair are meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]

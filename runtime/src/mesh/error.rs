@@ -21,6 +21,15 @@ pub enum MeshError {
         /// Where it should apply.
         on: Vec<Place>,
     },
+    /// The size that a gap asks for is not a positive number.
+    BadFilmSize {
+        /// Its value.
+        size: f64,
+        /// The gap.
+        gap: f64,
+        /// Where it was found.
+        at: Point,
+    },
     /// The growth rate is not above 1.
     BadGrowth {
         /// Its value.
@@ -75,6 +84,11 @@ impl fmt::Display for MeshError {
                 let places: Vec<String> = on.iter().map(ToString::to_string).collect();
                 write!(f, "the mesh size {size} on {} is not a positive length", places.join(" + "))
             }
+            E::BadFilmSize { size, gap, at: [x, y] } => write!(
+                f,
+                "the mesh size that a gap of {gap:.3e} at ({x:.4}, {y:.4}) asks for is {size:.3e}, not a positive length; give it a \
+                 lower bound, such as `max(0.01 um, film.gap/2)`"
+            ),
             E::BadGrowth { growth } => {
                 write!(f, "the mesh growth rate {growth} is not above 1; use e.g. `growth = 1.25`")
             }

@@ -4,6 +4,7 @@
 //! new cells that share the bodies' curved edges, node by node; only the pieces on the axis of symmetry are divided anew.
 
 use super::assemble::{Draft, assemble};
+use super::film::FilmSize;
 use super::outline::{Chain, Outline};
 use super::sizing::SizeField;
 use super::triangulate::triangulate;
@@ -21,20 +22,26 @@ enum Side {
 }
 
 /// A region that is meshed anew whenever the bodies around it have moved.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Follower {
     region: String,
     sides: Vec<Side>,
     largest: f64,
     growth: f64,
+    films: Vec<FilmSize>,
 }
 
 impl Follower {
-    /// The region with index `region` of a checked geometry.
+    /// The region with index `region` of a checked geometry, with films in it.
     ///
     /// # Errors
     /// The loop of the region does not close.
-    pub fn new(geometry: &Geometry, region: usize, sizing: &MeshSizing) -> Result<Self, MeshError> {
+    pub fn new(
+        geometry: &Geometry,
+        region: usize,
+        sizing: &MeshSizing,
+        films: Vec<FilmSize>,
+    ) -> Result<Self, MeshError> {
         let boundary = geometry.boundary(region).map_err(MeshError::Geometry)?;
         let mut first = Vec::new();
         let mut count = 0;
@@ -51,7 +58,7 @@ impl Follower {
         let region = geometry.regions[region].name.clone();
         let largest = sizing.largest_in(&region, geometry);
         let sides = boundary.pieces().map(side).collect();
-        Ok(Self { region, sides, largest, growth: sizing.growth })
+        Ok(Self { region, sides, largest, growth: sizing.growth, films })
     }
 
     /// Adds the region, in the shape that it has where the bodies' nodes lie at `positions`, to a mesh.
@@ -61,7 +68,7 @@ impl Follower {
     pub fn attach(&self, mesh: &mut Mesh, positions: &[Point]) -> Result<(), MeshError> {
         let outline = self.outline(mesh, positions)?;
         let overlap = |at| MeshError::Overlap { region: self.region.clone(), at };
-        let field = self.sizes(&outline);
+        let field = self.sizes(&outline)?;
         let triangles = triangulate(&outline, &field).map_err(|(at, _)| overlap(at))?;
         let part = assemble(Draft {
             points: triangles.points,
@@ -110,7 +117,7 @@ impl Follower {
                 sides,
             });
         }
-        let field = self.sizes(&outline);
+        let field = self.sizes(&outline)?;
         for side in &self.sides {
             let Side::Axis { ends } = *side else { continue };
             // Regions keep the axis on their left, so that the pieces run downwards; the path runs upwards.
@@ -138,8 +145,8 @@ impl Follower {
         Ok(Chain { path: "axis".into(), label: None, points, middles, sides: [None, Some(0)] })
     }
 
-    /// Cells start with the size of the edges around them and grow inwards.
-    fn sizes(&self, outline: &Outline) -> SizeField<'static> {
+    /// Cells start with the size of the edges around them, or that of the film there, and grow inwards.
+    fn sizes(&self, outline: &Outline) -> Result<SizeField<'static>, MeshError> {
         let mut smallest = vec![self.largest; outline.points.len()];
         for [a, b] in outline.chains.iter().flat_map(Chain::edges) {
             let length = point::distance(outline.points[a], outline.points[b]);
@@ -147,7 +154,9 @@ impl Follower {
                 smallest[end] = smallest[end].min(length);
             }
         }
-        SizeField::around(smallest.into_iter().zip(outline.points.iter().copied()), self.largest, self.growth)
+        self.films.iter().try_for_each(|film| film.limit(outline, &mut smallest))?;
+        let points = smallest.into_iter().zip(outline.points.iter().copied());
+        Ok(SizeField::around(points, self.largest, self.growth))
     }
 
     /// Appends the cells of the region behind those of a mesh.

@@ -10,6 +10,7 @@
 mod assemble;
 mod delaunay;
 mod error;
+mod film;
 mod follow;
 mod front;
 mod generate;
@@ -26,6 +27,7 @@ mod triangles;
 mod triangulate;
 
 pub use error::MeshError;
+pub use film::FilmSize;
 pub use follow::Follower;
 pub use locate::Locator;
 pub use quality::{QualityStatistics, cell_quality};

@@ -9,6 +9,7 @@ use ansatz_geometry::{Curve, Geometry, LoopPart, Path, PathBuilder, Region, Turn
 use dry::Dry;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
+use std::rc::Rc;
 
 /// The `mesh` block of the dry-contact model.
 fn dry_sizing(coarse: f64) -> MeshSizing {
@@ -379,11 +380,16 @@ fn channel_between_plates() -> Geometry {
 
 /// Mesh of the channel with its upper wall displaced by `u(x)`.
 fn followed(u: impl Fn(f64) -> f64) -> Result<(Mesh, Vec<Point>), MeshError> {
+    followed_with(u, Vec::new())
+}
+
+/// The same with sizes from the gap.
+fn followed_with(u: impl Fn(f64) -> f64, films: Vec<FilmSize>) -> Result<(Mesh, Vec<Point>), MeshError> {
     let (geometry, sizing) = (channel_between_plates(), everywhere(0.5));
     let mut mesh = Mesh::generate_bodies(&geometry, &sizing, &["channel"])?;
     let moved = |&[x, y]: &Point| [x, if y > 0.0 { y * (1.0 + u(x)) } else { y }];
     let positions: Vec<Point> = mesh.nodes.iter().map(moved).collect();
-    Follower::new(&geometry, 2, &sizing)?.attach(&mut mesh, &positions)?;
+    Follower::new(&geometry, 2, &sizing, films)?.attach(&mut mesh, &positions)?;
     Ok((mesh, positions))
 }
 
@@ -402,6 +408,28 @@ fn a_region_between_bodies_takes_the_shape_that_they_leave_it() {
     assert!(mesh.path_edges("channel/outlet").all(|edge| edge.left.is_some() != edge.right.is_some()));
     let bodies = mesh.bodies();
     assert_eq!((bodies.cells.len(), bodies.regions.len()), (mesh.body_cells, 2));
+}
+
+/// `size(gap)` on both walls of the channel.
+fn on_walls(size: impl Fn(f64) -> f64 + 'static) -> FilmSize {
+    FilmSize { surfaces: [vec!["ceiling.low"], vec!["floor.high"]], at: [true, true], size: Rc::new(size) }
+}
+
+#[test]
+fn cells_in_a_film_are_as_small_as_its_gap_asks() {
+    let cells = |films| followed_with(|x| -0.2 * x, films).expect("there is room").0;
+    let in_film = |mesh: &Mesh| mesh.cells.len() - mesh.body_cells;
+    let (plain, fine) = (cells(Vec::new()), cells(vec![on_walls(|gap| gap / 4.0)]));
+    assert_conforming(&fine);
+    assert!(2 * in_film(&fine) > 3 * in_film(&plain), "{} and {}", in_film(&fine), in_film(&plain));
+    assert_eq!(fine.body_cells, plain.body_cells, "bodies keep their cells");
+    assert_eq!(in_film(&cells(vec![on_walls(|_| 10.0)])), in_film(&plain), "a size is an upper bound");
+}
+
+#[test]
+fn a_film_without_a_positive_size_is_refused() {
+    let error = followed_with(|_| 0.0, vec![on_walls(|gap| gap - 1.0)]).expect_err("no size");
+    assert!(matches!(error, MeshError::BadFilmSize { .. }), "{error}");
 }
 
 #[test]

@@ -109,14 +109,16 @@ fn write_frame(
     let moved = frames.columns.iter().position(is_displacement);
     let shown = frames.columns.iter().position(|c| c.components == 1);
     let Some(shown) = shown else { return Ok(()) };
+    let vectors = |k: usize| data[k].values.chunks(3).map(|v| [v[0], v[1]]);
     let displacement: Vec<[f64; 2]> = match moved {
-        Some(k) => {
-            data[k].values.chunks(3).map(|u| [u[0], u[1]].map(|x| x * frames.columns[k].unit_value)).collect()
-        }
+        Some(k) => vectors(k).map(|u| u.map(|x| x * frames.columns[k].unit_value)).collect(),
         None => vec![[0.0; 2]; grid.points.len()],
     };
+    let drawn = frames.columns.iter().position(|c| c.components == 3 && !is_displacement(c));
+    let arrows: Vec<[f64; 2]> = drawn.map_or_else(Vec::new, |k| vectors(k).collect());
     let picture = folder.join(format!("{}_{number:05}.png", frames.columns[shown].name));
-    let caption = format!("t = {:.2} {}", frame.time, program.base_units[2]);
+    let about = drawn.map_or_else(String::new, |k| format!(", arrows: {}", frames.columns[k].name));
+    let caption = format!("t = {:.2} {}{about}", frame.time, program.base_units[2]);
     let title = &data[shown].name;
     snapshot::write(
         &picture,
@@ -124,6 +126,7 @@ fn write_frame(
             grid,
             displacement: &displacement,
             values: &data[shown].values,
+            arrows: &arrows,
             title,
             caption: &caption,
         },

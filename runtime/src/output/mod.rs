@@ -1,6 +1,7 @@
 //! The results folder of a run: tables, field frames, pictures, plots and the summary `run.json`. Whatever is written is complete at
 //! any moment, so that a run that ends early leaves readable results.
 
+mod arrows;
 mod canvas;
 mod frames;
 mod plot;

@@ -1,5 +1,6 @@
-//! Pictures of the deformed bodies coloured by one scalar, with a colour bar.
+//! Pictures of the deformed bodies coloured by one scalar, with a colour bar, and with arrows for a vector.
 
+use super::arrows;
 use super::canvas::{Canvas, Rgb};
 use super::vtu::Grid;
 use crate::error::Error;
@@ -23,6 +24,8 @@ pub struct Snapshot<'a> {
     pub displacement: &'a [[f64; 2]],
     /// Value of each node.
     pub values: &'a [f64],
+    /// In-plane vector of each node, drawn as an arrow; empty for none.
+    pub arrows: &'a [[f64; 2]],
     /// Title, such as `strain_zz [1]`.
     pub title: &'a str,
     /// Second line, such as `t = 85 s`.
@@ -50,6 +53,9 @@ pub fn write(path: &Path, snapshot: &Snapshot<'_>) -> Result<(), Error> {
         let values = edge.map(|n| snapshot.values[n as usize]);
         draw_curve(&mut canvas, edge.map(|n| view.pixel(position(n))), values, &range);
     }
+    let arrows: Vec<_> =
+        snapshot.arrows.iter().zip(0..).map(|(&arrow, n)| (view.pixel(position(n)), arrow)).collect();
+    arrows::draw(&mut canvas, &arrows, INK);
     draw_bar(&mut canvas, &range);
     canvas.text([MARGIN, 10.0], snapshot.title, INK);
     canvas.text([MARGIN, 24.0], snapshot.caption, INK);

@@ -118,6 +118,7 @@ const fn program(solve: fn(&[f64]) -> Solve) -> Program {
             space: Space::P1,
             domains: &[Domain::Cells(&["body"])],
             unit: "1",
+            differential: true,
             start: |_, _, out| out[0] = 1.0,
         }],
         states: &[State {
@@ -131,6 +132,7 @@ const fn program(solve: fn(&[f64]) -> Solve) -> Program {
         blocks: &["decay"],
         ties: &[],
         moving: &[],
+        gap_sizes: &[],
         holds: &[],
         integrals: &[
             Integral { value: None, residual: decay, tangent: Some(decay_tangent), ..INTEGRAL_OF_U },

@@ -102,6 +102,28 @@ impl SparsePattern {
         self.rows[range.clone()].binary_search(&row).ok().map(|k| range.start + k)
     }
 
+    /// Positions of a dense block of entries among the values: that of (`equations[i]`, `equations[j]`) goes to `block[i * n + j]`, as [`Self::position`]
+    /// would tell, and [`Self::entries`] where one of the two is no equation. The pattern must couple all equations of the block.
+    ///
+    /// `places` is scratch, one number per row.
+    pub(crate) fn block_positions(&self, equations: &[Option<u32>], places: &mut [u32], block: &mut [u32]) {
+        let n = equations.len();
+        block.fill(self.entries() as u32);
+        for (j, column) in equations.iter().enumerate().filter_map(|(j, e)| Some((j, (*e)?))) {
+            for position in self.column(column as usize) {
+                places[self.rows[position] as usize] = position as u32;
+            }
+            for (i, row) in equations.iter().enumerate().filter_map(|(i, e)| Some((i, (*e)?))) {
+                if self.kind == MatrixKind::Unsymmetric {
+                    block[i * n + j] = places[row as usize];
+                } else if row >= column {
+                    let position = places[row as usize];
+                    (block[i * n + j], block[j * n + i]) = (position, position);
+                }
+            }
+        }
+    }
+
     /// The pattern as the factorisation sees it.
     pub(super) fn view(&self) -> Pattern<'_> {
         let kind = match self.kind {
@@ -235,6 +257,21 @@ mod tests {
         let pattern = SparsePattern::from_elements(4, MatrixKind::Unsymmetric, ELEMENTS);
         assert_eq!(pattern.rows(), [0, 2, 1, 0, 2, 3, 2, 3]);
         assert_ne!(pattern.position(0, 2), pattern.position(2, 0));
+    }
+
+    #[test]
+    fn positions_of_a_block_are_those_of_its_entries() {
+        let equations = [Some(3), None, Some(2)];
+        for kind in [MatrixKind::Symmetric, MatrixKind::Unsymmetric] {
+            let pattern = SparsePattern::from_elements(4, kind, ELEMENTS);
+            let mut block = [0; 9];
+            pattern.block_positions(&equations, &mut [0; 4], &mut block);
+            for (k, &place) in block.iter().enumerate() {
+                let entry = equations[k / 3].zip(equations[k % 3]);
+                let position = entry.and_then(|(row, column)| pattern.position(row, column));
+                assert_eq!(place as usize, position.unwrap_or(pattern.entries()), "{kind:?}, {k}");
+            }
+        }
     }
 
     #[test]

@@ -121,6 +121,19 @@ impl System {
         mesh: Mesh,
         followers: Vec<Follower>,
     ) -> Result<Self, Error> {
+        let mut system = Self::without_pattern(program, parameters, mesh, followers)?;
+        let y = vec![0.0; system.unknowns.length];
+        system.rebuild_pattern(&y)?;
+        Ok(system)
+    }
+
+    /// All but the pattern of the matrix, which depends on who touches whom.
+    fn without_pattern(
+        program: &'static Program,
+        parameters: &[f64],
+        mesh: Mesh,
+        followers: Vec<Follower>,
+    ) -> Result<Self, Error> {
         let unknowns = Unknowns::new(program, &mesh)?;
         let g = globals::constants(program, parameters, &mesh)?;
         let held = start::held_unknowns(program, &mesh, &unknowns)?;
@@ -150,7 +163,7 @@ impl System {
         if settings.time.is_some_and(|(start, end)| start >= end) {
             return Err(Error::Model(String::from("the time of a run must end after it starts")));
         }
-        let mut system = Self {
+        Ok(Self {
             program,
             settings,
             mesh,
@@ -179,10 +192,7 @@ impl System {
             stabiliser: 0,
             levels: None,
             ramp: None,
-        };
-        let y = vec![0.0; system.unknowns.length];
-        system.rebuild_pattern(&y)?;
-        Ok(system)
+        })
     }
 
     /// Number of equations that the sparse solver sees.
@@ -222,8 +232,8 @@ impl System {
         self.factored = None;
         let diagonal = (0..self.free.len() as u32).filter_map(|i| self.pattern.position(i, i));
         self.diagonal = diagonal.collect();
-        let follows: Vec<usize> =
-            self.ties.iter().filter(|tied| tied.rate).map(|tied| tied.unknown).collect();
+        let mut follows = vec![false; self.unknowns.length];
+        self.ties.iter().filter(|tied| tied.rate).for_each(|tied| follows[tied.unknown] = true);
         let of_functionals = self.functionals.iter_mut().flat_map(|f| f.terms_mut());
         for term in self.terms.iter_mut().chain(of_functionals) {
             if term.integral.tangent.is_some() {

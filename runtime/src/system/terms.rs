@@ -44,30 +44,34 @@ impl Term {
         Ok(Self { integral, elements, positions: Vec::new(), mirrored: Vec::new(), gathered, out })
     }
 
-    /// Looks up where the tangent goes; entries of held unknowns go to the spare last value, columns of unknowns that equal rates (`of_rates`,
-    /// ascending) to a second matrix behind it.
-    pub fn locate(&mut self, pattern: &SparsePattern, equations: &[u32], of_rates: &[usize]) {
-        let spare = pattern.entries() as u32;
-        let n = self.elements.local();
-        let mirror = self.integral.symmetric && pattern.kind() == MatrixKind::Unsymmetric;
+    /// Looks up where the tangent goes; entries of held unknowns go to the spare last value, columns of unknowns that equal rates (`follows`) to a
+    /// second matrix behind it.
+    pub fn locate(&mut self, pattern: &SparsePattern, equations: &[u32], follows: &[bool]) {
+        let (n, spare) = (self.elements.local(), pattern.entries() as u32);
+        let symmetric = self.integral.symmetric;
+        let mirror = symmetric && pattern.kind() == MatrixKind::Unsymmetric;
         self.positions.clear();
         self.mirrored.clear();
-        let place = |a: u32, b: u32| {
-            let (row, column) = (equations[a as usize], equations[b as usize]);
-            let free = row != NONE && column != NONE;
-            let second = if of_rates.binary_search(&(b as usize)).is_ok() { spare + 1 } else { 0 };
-            free.then(|| pattern.position(row, column)).flatten().map_or(spare, |p| p as u32 + second)
-        };
+        let mut places = vec![0; pattern.size()];
+        let mut blocks = vec![[spare; BATCH]; n * n];
+        let mut block = vec![spare; n * n];
         for batch in 0..self.elements.batches() {
             let unknowns = self.elements.unknowns(batch);
+            for lane in 0..BATCH {
+                let unknown = |i: usize| unknowns[i][lane] as usize;
+                let of_lane: Vec<Option<u32>> =
+                    (0..n).map(|i| Some(equations[unknown(i)]).filter(|&e| e != NONE)).collect();
+                pattern.block_positions(&of_lane, &mut places, &mut block);
+                for (k, (to, &place)) in blocks.iter_mut().zip(&block).enumerate() {
+                    let second = if place != spare && follows[unknown(k % n)] { spare + 1 } else { 0 };
+                    to[lane] = place + second;
+                }
+            }
             for i in 0..n {
-                let columns = if self.integral.symmetric { i + 1 } else { n };
-                for j in 0..columns {
-                    self.positions.push(std::array::from_fn(|l| place(unknowns[i][l], unknowns[j][l])));
+                for j in 0..if symmetric { i + 1 } else { n } {
+                    self.positions.push(blocks[i * n + j]);
                     if mirror {
-                        let transposed =
-                            |l| if i == j { spare } else { place(unknowns[j][l], unknowns[i][l]) };
-                        self.mirrored.push(std::array::from_fn(transposed));
+                        self.mirrored.push(if i == j { [spare; BATCH] } else { blocks[j * n + i] });
                     }
                 }
             }

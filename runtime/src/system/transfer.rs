@@ -68,9 +68,12 @@ impl System {
         let parameters = self.program.layout.parameters;
         let parameters = self.g[parameters[0]..parameters[1]].to_vec();
         let followers = std::mem::take(&mut self.followers);
-        let old = std::mem::replace(self, Self::following(self.program, &parameters, mesh, followers)?);
-        self.take_over(&old, y)?;
-        Ok(self.transfer(&old.mesh, &old.unknowns))
+        let old = std::mem::replace(self, Self::without_pattern(self.program, &parameters, mesh, followers)?);
+        let transfer = self.transfer(&old.mesh, &old.unknowns);
+        let y = transfer.apply(y);
+        self.rebuild_pattern(&y)?;
+        self.take_over(&old, &y)?;
+        Ok(transfer)
     }
 
     /// Places of the bodies' nodes. Paths that bound no body, such as an outlet, stretch between their ends.
@@ -96,7 +99,7 @@ impl System {
         positions
     }
 
-    /// Keeps what the solution has learnt.
+    /// Keeps what the solution has learnt; y are the unknowns on the new mesh.
     fn take_over(&mut self, old: &Self, y: &[f64]) -> Result<(), Error> {
         let layout = self.program.layout;
         self.g[layout.time] = old.g[layout.time];
@@ -110,8 +113,7 @@ impl System {
             self.levels = Some(Vec::new());
             return Ok(());
         }
-        let there = self.transfer(&old.mesh, &old.unknowns).apply(y);
-        self.fix_levels(&there)
+        self.fix_levels(y)
     }
 
     fn transfer(&self, old: &Mesh, before: &Unknowns) -> Transfer {

@@ -1,0 +1,57 @@
+//! Arrows of a vector over a picture: one in each square of a raster, so that they do not hide each other.
+
+use super::canvas::{Canvas, Rgb};
+use std::collections::BTreeMap;
+
+/// Width of a square of the raster [pixels].
+const RASTER: f64 = 16.0;
+/// Length of the longest arrow [pixels].
+const LONGEST: f64 = 24.0;
+/// Shorter ones are left out [pixels].
+const SHORTEST: f64 = 2.0;
+/// Length of the two strokes of the head, as a part of the arrow.
+const HEAD: f64 = 0.35;
+/// Cosine and sine of the angle between head and shaft.
+const SPREAD: [f64; 2] = [0.866, 0.5];
+
+/// Draws vectors at pixels, y upwards in the vectors; the longest of them all is drawn with the full length.
+pub fn draw(canvas: &mut Canvas, arrows: &[([f64; 2], [f64; 2])], ink: Rgb) {
+    let largest = arrows.iter().map(|(_, v)| v[0].hypot(v[1])).fold(0.0, f64::max);
+    if !(largest > 0.0 && largest.is_finite()) {
+        return;
+    }
+    let mut squares: BTreeMap<[i64; 2], (f64, usize)> = BTreeMap::new();
+    for (k, (at, _)) in arrows.iter().enumerate() {
+        let square = at.map(|x| (x / RASTER).floor() as i64);
+        let off = [0, 1].map(|i| at[i] / RASTER - square[i] as f64 - 0.5);
+        let distance = off[0].hypot(off[1]);
+        let nearest = squares.entry(square).or_insert((distance, k));
+        if distance < nearest.0 {
+            *nearest = (distance, k);
+        }
+    }
+    for (_, k) in squares.into_values() {
+        let (at, vector) = arrows[k];
+        let shaft = [vector[0], -vector[1]].map(|x| x * LONGEST / largest);
+        if shaft[0].hypot(shaft[1]) >= SHORTEST {
+            arrow(canvas, at, shaft, ink);
+        }
+    }
+}
+
+/// An arrow centred at `at`, in ink on a light seam.
+fn arrow(canvas: &mut Canvas, at: [f64; 2], shaft: [f64; 2], ink: Rgb) {
+    let [tail, tip] = [-0.5, 0.5].map(|s| [0, 1].map(|i| at[i] + s * shaft[i]));
+    let [c, s] = SPREAD.map(|x| x * HEAD);
+    let stroke = |side: f64| {
+        [tip[0] - c * shaft[0] + side * s * shaft[1], tip[1] - c * shaft[1] - side * s * shaft[0]]
+    };
+    let lines = [(tail, tip), (tip, stroke(1.0)), (tip, stroke(-1.0))];
+    for (from, to) in lines {
+        for shift in [[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]] {
+            let moved = |p: [f64; 2]| [p[0] + shift[0], p[1] + shift[1]];
+            canvas.line(moved(from), moved(to), [255; 3]);
+        }
+    }
+    lines.into_iter().for_each(|(from, to)| canvas.line(from, to, ink));
+}

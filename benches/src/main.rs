@@ -14,13 +14,11 @@ const USAGE: &str = "usage: ansatz-benches p1 N ps|axi    assembly on N x N x 2 
                       p4 N           a sphere pressed into a cylinder
                       lu ns|elastic N [THREADS]   factorisation of a matrix with N unknowns
                       compile MODEL  the stages of the compiler for a shipped model, such as `wet`, or a file
-                      model dry N [TIME]  the dry model on about N triangles, to a time [s]
-                      dry TIME [COARSE]   the same with its cells so many times larger";
+                      model dry|wet N [TIME]   the model on about N triangles, to a time [s]
+                      dry|wet TIME [COARSE]    the same with its cells so many times larger";
 
 /// Where the peers' meshes lie, seen from the workspace.
 const MESHES: &str = "../shared/peers/mesh";
-/// Time to which the dry model is meant to run \[s\].
-const WHOLE: f64 = 250.0;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -49,10 +47,10 @@ fn run(words: &[&str]) -> Result<Value, String> {
         ["lu", kind, n] => factorisation(kind, number(n)?, 1),
         ["lu", kind, n, threads] => factorisation(kind, number(n)?, number(threads)?),
         ["compile", model] => report::compiler(model),
-        ["model", "dry", n] => report::dry_on(number(n)?, WHOLE),
-        ["model", "dry", n, until] => report::dry_on(number(n)?, number(until)?),
-        ["dry", until] => report::dry(number(until)?, 1.0),
-        ["dry", until, coarse] => report::dry(number(until)?, number(coarse)?),
+        ["model", name, n] => report::model(name, number(n)?, None),
+        ["model", name, n, until] => report::model(name, number(n)?, Some(number(until)?)),
+        [name @ ("dry" | "wet"), until] => report::run(name, 1.0, Some(number(until)?)),
+        [name @ ("dry" | "wet"), until, coarse] => report::run(name, number(coarse)?, Some(number(until)?)),
         _ => Err(USAGE.into()),
     }
 }

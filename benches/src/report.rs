@@ -7,7 +7,7 @@ use crate::flow::Flow;
 use crate::solves::Solve;
 use ansatz::Simulation;
 use ansatz::observer::Observer;
-use ansatz_models::dry_contact;
+use ansatz_models::{dry_contact, wet_contact};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -149,45 +149,49 @@ pub fn compiler(model: &str) -> Result<Value, String> {
     Ok(line)
 }
 
-/// A run of the dry model on about so many triangles to a time \[s\].
+/// A run of a shipped model, `dry` or `wet`, on about so many triangles to a time \[s\], by default to its end.
 ///
 /// # Errors
-/// If the run fails.
-pub fn dry_on(elements: usize, until: f64) -> Result<Value, String> {
+/// If there is no such model, or if the run fails.
+pub fn model(name: &str, elements: usize, until: Option<f64>) -> Result<Value, String> {
     let mut coarse = 1.0;
     for _ in 0..CORRECTIONS {
-        let cells = prepare_dry(coarse)?.system().mesh.cells.len();
+        let cells = prepare(name, coarse)?.system().mesh.cells.len();
         // Twice the size of the cells makes about a quarter of them; less where short boundaries ask for small ones.
         coarse *= (cells as f64 / elements as f64).sqrt();
     }
-    dry(until, coarse)
+    run(name, coarse, until)
 }
 
-/// A run of the dry model to a time \[s\], its cells `coarse` times as large as the model's.
+/// A run of a shipped model, `dry` or `wet`, to a time \[s\], by default to its end, its cells `coarse` times as large as the model's.
 ///
 /// # Errors
-/// If the run fails.
-pub fn dry(until: f64, coarse: f64) -> Result<Value, String> {
+/// If there is no such model, or if the run fails.
+pub fn run(name: &str, coarse: f64, until: Option<f64>) -> Result<Value, String> {
     struct Quiet;
     impl Observer for Quiet {}
     let clock = Clock::start();
-    let mut simulation = prepare_dry(coarse)?;
+    let mut simulation = prepare(name, coarse)?;
     let setup = clock.seconds();
     let clock = Clock::start();
-    let outcome = simulation.run(&mut Quiet, Some(until)).map_err(|e| e.to_string())?;
+    let outcome = simulation.run(&mut Quiet, until).map_err(|e| e.to_string())?;
     let run = clock.seconds();
     let statistics = simulation.record().statistics();
     let system = simulation.system();
     Ok(json!({
-        "problem": "model", "kind": "dry", "peer": "ansatz", "n_elements": system.mesh.cells.len(),
-        "n_dofs": system.equation_count(), "matrix_entries": system.matrix_entries(), "until": until, "outcome": outcome,
+        "problem": "model", "kind": name, "peer": "ansatz", "n_elements": system.mesh.cells.len(),
+        "n_dofs": system.equation_count(), "matrix_entries": system.matrix_entries(), "outcome": outcome,
         "reached": simulation.record().times().last(), "steps": statistics.accepted, "rejected": statistics.rejected,
         "total_its": statistics.iterations, "setup_s": setup, "run_s": run, "total_s": setup + run,
         "per_it_ms": run / statistics.iterations as f64 * 1e3,
     }))
 }
 
-fn prepare_dry(coarse: f64) -> Result<Simulation, String> {
-    let parameters = dry_contact::Parameters { coarse, ..Default::default() };
-    dry_contact::simulation(&parameters).map_err(|e| e.to_string())
+fn prepare(name: &str, coarse: f64) -> Result<Simulation, String> {
+    let simulation = match name {
+        "dry" => dry_contact::simulation(&dry_contact::Parameters { coarse, ..Default::default() }),
+        "wet" => wet_contact::simulation(&wet_contact::Parameters { coarse, ..Default::default() }),
+        _ => return Err(format!("`{name}` is neither `dry` nor `wet`")),
+    };
+    simulation.map_err(|e| e.to_string())
 }

@@ -1,12 +1,17 @@
 //! Everything about a factorisation that does not depend on values.
 
 use crate::error::Error;
-use crate::ordering::{minimum_degree, put_off};
+use crate::ordering::{Effort, best_supernodes};
 use crate::pattern::{Graph, Kind, Pattern, inverse};
 use crate::schedule::Schedule;
-use crate::supernodes::{Size, Supernodes};
-use crate::tree::{EliminationTree, NONE};
+use crate::supernodes::{OPERATION, Size, Supernodes};
+use crate::tree::NONE;
 use std::ops::Range;
+
+/// Time of a thorough analysis for each unknown \[ns\].
+const DISSECTION: f64 = 6000.0;
+/// It is tried once factorisations took so many times longer than it would: where a quarter is saved, that many more pay for it.
+const PAYS: f64 = 4.0;
 
 /// Rows of the blocks below the diagonal come in multiples of this, so that vectors have no remainder.
 pub(crate) const PADDING: usize = 8;
@@ -15,6 +20,7 @@ pub(crate) const PADDING: usize = 8;
 #[derive(Clone, Debug)]
 pub struct Analysis {
     pub(crate) kind: Kind,
+    effort: Effort,
     pub(crate) order: Vec<u32>,
     pub(crate) fronts: Vec<Front>,
     /// Rows below all fronts, as turns of elimination.
@@ -79,20 +85,35 @@ impl Analysis {
     /// # Panics
     /// When the pattern names rows beyond its size.
     pub fn new(pattern: Pattern<'_>, weak: &[u32]) -> Result<Self, Error> {
+        Self::with_effort(pattern, weak, Effort::Quick)
+    }
+
+    /// As [`Self::new`], with nested dissection where that takes fewer operations: the better order for many factorisations.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    ///
+    /// # Panics
+    /// As [`Self::new`].
+    pub fn thorough(pattern: Pattern<'_>, weak: &[u32]) -> Result<Self, Error> {
+        Self::with_effort(pattern, weak, Effort::Thorough)
+    }
+
+    fn with_effort(pattern: Pattern<'_>, weak: &[u32], effort: Effort) -> Result<Self, Error> {
         if pattern.size() == 0 {
             return Err(Error::NoEquations);
         }
         let graph = Graph::of(pattern);
-        let order = put_off(&graph, minimum_degree(&graph)?, weak);
-        let tree = EliminationTree::new(&graph, &order);
-        let supernodes = Supernodes::new(&tree, pattern.kind);
-        Self::from_supernodes(pattern, &graph, supernodes)
+        let supernodes = best_supernodes(&graph, pattern.kind, weak, effort)?;
+        let analysis = Self::from_supernodes(pattern, &graph, supernodes)?;
+        Ok(Self { effort, ..analysis })
     }
 
     fn from_supernodes(pattern: Pattern<'_>, graph: &Graph, supernodes: Supernodes) -> Result<Self, Error> {
         let place = inverse(&supernodes.order);
         let mut analysis = Self {
             kind: pattern.kind,
+            effort: Effort::Quick,
             fronts: fronts(&supernodes),
             rows: Vec::with_capacity(supernodes.below.iter().map(|&m| m as usize).sum()),
             targets: Vec::new(),
@@ -138,6 +159,13 @@ impl Analysis {
     /// Floating-point operations of a factorisation.
     pub fn operations(&self) -> f64 {
         self.operations
+    }
+
+    /// Whether so many factorisations took so long that a better order, if there is one, would soon have paid for itself. It depends on counted
+    /// operations, not on times.
+    pub(crate) fn deserves_effort(&self, factorisations: usize) -> bool {
+        let spent = factorisations as f64 * self.operations * OPERATION;
+        self.effort == Effort::Quick && spent > PAYS * DISSECTION * self.size() as f64
     }
 
     /// Bytes that this analysis and the factors take at most, on some number of threads.
@@ -228,19 +256,21 @@ impl Analysis {
             front_of[front.first..front.first + front.width].fill(k as u32);
         }
         let owner = |row: usize, column: usize| front_of[place[row].min(place[column]) as usize] as usize;
+        // In the order of elimination, fronts and entries that belong together are near each other in memory.
         let mut next = vec![0; self.fronts.len() + 1];
-        pattern.for_each(|_, row, column| next[owner(row, column) + 1] += 1);
+        for_each_by_turn(pattern, &self.order, |_, row, column| next[owner(row, column) + 1] += 1);
         for (k, front) in self.fronts.iter_mut().enumerate() {
             next[k + 1] += next[k];
             front.entries = next[k]..next[k + 1];
         }
-        self.entries = vec![(0, 0); pattern.rows.len()];
-        pattern.for_each(|position, row, column| {
+        let mut entries = vec![(0, 0); pattern.rows.len()];
+        for_each_by_turn(pattern, &self.order, |position, row, column| {
             let k = owner(row, column);
             let target = self.position(&self.fronts[k], place[row] as usize, place[column] as usize);
-            self.entries[next[k]] = (position as u32, target as u32);
+            entries[next[k]] = (position as u32, target as u32);
             next[k] += 1;
         });
+        self.entries = entries;
     }
 
     /// Position among the values of a front of an entry that belongs to it.
@@ -257,6 +287,14 @@ impl Analysis {
             (false, _) => width * width + below(row) + (column - first) * padded,
             (true, false) => width * (width + padded) + below(column) + (row - first) * padded,
         }
+    }
+}
+
+/// Calls `visit(position, row, column)` for every entry, columns in the order of their elimination.
+fn for_each_by_turn(pattern: Pattern<'_>, order: &[u32], mut visit: impl FnMut(usize, usize, usize)) {
+    for &column in order {
+        let column = column as usize;
+        pattern.column(column).for_each(|position| visit(position, pattern.rows[position] as usize, column));
     }
 }
 

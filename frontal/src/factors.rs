@@ -3,7 +3,7 @@
 use crate::analysis::{Analysis, Front};
 use crate::error::Error;
 use crate::front::{Blocks, Scratch, assemble, eliminate};
-use crate::pattern::Kind;
+use crate::pattern::{Kind, Pattern};
 use crate::pivot::{Pivots, Threshold};
 use crate::schedule::{Place, Schedule};
 use crate::sweep::Row;
@@ -21,6 +21,8 @@ pub struct Factors {
     pub(crate) exchanges: Vec<u32>,
     schedule: Schedule,
     sites: Vec<Site>,
+    /// Factorisations so far.
+    factorisations: usize,
     /// Right-hand sides in the order of elimination: one, or several side by side.
     pub(crate) work: Vec<f64>,
     pub(crate) rows: Vec<Row>,
@@ -69,6 +71,7 @@ impl Factors {
             exchanges: vec![0; analysis.size()],
             sites: schedule.stacks.iter().map(site).collect::<Result<_, Error>>()?,
             schedule,
+            factorisations: 0,
             work: Vec::new(),
             rows: Vec::new(),
             analysis,
@@ -85,11 +88,24 @@ impl Factors {
         (self.sites.len() - 1).max(1)
     }
 
+    /// Looks for a better order of elimination once so much was factored that it is worth the time: to be called before a factorisation, with
+    /// the pattern and the weak unknowns of [`Analysis::new`]. The same sequence of calls gives the same orders.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn reorder(&mut self, pattern: Pattern<'_>, weak: &[u32]) -> Result<(), Error> {
+        if self.analysis.deserves_effort(self.factorisations) {
+            *self = Self::with_threads(Analysis::thorough(pattern, weak)?, self.threads())?;
+        }
+        Ok(())
+    }
+
     /// Factors the matrix with `entries` at the positions of the pattern, the largest near one.
     ///
     /// # Errors
     /// [`Error::NotPositive`] for Cholesky.
     pub fn factor(&mut self, entries: &[f64]) -> Result<Pivots, Error> {
+        self.factorisations += 1;
         let threads = self.threads();
         let largest = entries.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
         let threshold = Threshold { zero: ZERO_PIVOT * largest, substitute: SUBSTITUTE * largest };

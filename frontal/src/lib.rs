@@ -11,6 +11,7 @@
 //! On one thread the same matrix gives the same bits.
 
 mod analysis;
+mod dissection;
 mod error;
 mod factors;
 mod front;
@@ -18,9 +19,11 @@ mod kernel;
 mod ordering;
 mod pattern;
 mod pivot;
+mod quotient;
 mod refinement;
 mod scaling;
 mod schedule;
+mod separator;
 mod solver;
 mod substitution;
 mod supernodes;

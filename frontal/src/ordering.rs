@@ -1,13 +1,51 @@
-//! The order of elimination: approximate minimum degree, with unknowns that have no pivot of their own put off.
+//! The order of elimination: approximate minimum degree or nested dissection, with unknowns that have no pivot of their own put off.
 
+use crate::dissection::nested_dissection;
 use crate::error::Error;
-use crate::pattern::{Graph, inverse};
+use crate::pattern::{Graph, Kind, inverse};
+use crate::quotient::Quotient;
+use crate::supernodes::Supernodes;
+use crate::tree::EliminationTree;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
 
 /// Neighbours after which an unknown without a diagonal entry may be eliminated.
 const NEIGHBOURS: usize = 8;
+
+/// What may be spent on an order of elimination.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Effort {
+    /// Minimum degree.
+    Quick,
+    /// Nested dissection too, which takes several times as long.
+    Thorough,
+}
+
+/// Groups of columns in the order that takes the fewest operations.
+///
+/// # Errors
+/// [`Error::TooLarge`].
+pub(crate) fn best_supernodes(
+    graph: &Graph,
+    kind: Kind,
+    weak: &[u32],
+    effort: Effort,
+) -> Result<Supernodes, Error> {
+    let supernodes =
+        |order| Supernodes::new(&EliminationTree::new(graph, &put_off(graph, order, weak)), kind);
+    let quotient = Quotient::new(graph);
+    // Minimum degree counts groups: it may where they are all of one size.
+    let alike = quotient.weights().windows(2).all(|pair| pair[0] == pair[1]);
+    let order =
+        if alike { quotient.expand(&minimum_degree(&quotient.graph)?) } else { minimum_degree(graph)? };
+    let by_degree = supernodes(order);
+    if effort == Effort::Quick {
+        return Ok(by_degree);
+    }
+    let dissected = supernodes(quotient.expand(&nested_dissection(&quotient.graph, &quotient.weights())?));
+    Ok(if dissected.operations(kind) < by_degree.operations(kind) { dissected } else { by_degree })
+}
 
 /// Approximate minimum degree.
 ///

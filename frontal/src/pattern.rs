@@ -74,48 +74,48 @@ pub(crate) struct Graph {
 impl Graph {
     /// The equations that share an entry above or below the diagonal.
     pub fn of(pattern: Pattern<'_>) -> Self {
-        let size = pattern.size();
-        let mut starts = vec![0_u32; size + 1];
-        pattern.for_each(|_, row, column| {
-            if row != column {
-                starts[row + 1] += 1;
-                starts[column + 1] += 1;
-            }
-        });
-        (0..size).for_each(|k| starts[k + 1] += starts[k]);
-        let mut next = starts.clone();
-        let mut neighbours = vec![0; starts[size] as usize];
-        let mut add = |from: usize, to: usize| {
-            neighbours[next[from] as usize] = to as u32;
-            next[from] += 1;
-        };
-        pattern.for_each(|_, row, column| {
-            if row != column {
-                add(row, column);
-                add(column, row);
-            }
-        });
-        Self { starts, neighbours }.without_repetitions()
+        let lists = Self { starts: pattern.starts.to_vec(), neighbours: pattern.rows.to_vec() };
+        let by_row = lists.transposed();
+        // Ascending, as the pattern itself need not be.
+        let by_column = by_row.transposed();
+        by_row.united(&by_column)
     }
 
-    fn without_repetitions(mut self) -> Self {
-        let mut kept = 0;
+    /// The same edges in the other direction, ascending.
+    fn transposed(&self) -> Self {
+        let mut starts = vec![0_u32; self.size() + 1];
+        self.neighbours.iter().for_each(|&end| starts[end as usize + 1] += 1);
+        (0..self.size()).for_each(|k| starts[k + 1] += starts[k]);
+        let mut next = starts.clone();
+        let mut neighbours = vec![0; self.neighbours.len()];
         for node in 0..self.size() {
-            let range = self.starts[node] as usize..self.starts[node + 1] as usize;
-            self.neighbours[range.clone()].sort_unstable();
-            self.starts[node] = kept as u32;
-            for k in range {
-                let first = kept == self.starts[node] as usize;
-                if first || self.neighbours[kept - 1] != self.neighbours[k] {
-                    self.neighbours[kept] = self.neighbours[k];
-                    kept += 1;
-                }
+            for &end in self.around(node) {
+                let place = &mut next[end as usize];
+                neighbours[*place as usize] = node as u32;
+                *place += 1;
             }
         }
-        let size = self.size();
-        self.starts[size] = kept as u32;
-        self.neighbours.truncate(kept);
-        self
+        Self { starts, neighbours }
+    }
+
+    /// The edges of two graphs, each once and without loops; lists ascend.
+    fn united(&self, other: &Self) -> Self {
+        let mut starts = Vec::with_capacity(self.starts.len());
+        let mut neighbours = Vec::with_capacity(self.neighbours.len());
+        starts.push(0);
+        for node in 0..self.size() {
+            let (mut a, mut b) = (self.around(node), other.around(node));
+            let begin = neighbours.len();
+            while let Some(&next) = [a.first(), b.first()].into_iter().flatten().min() {
+                a = a.strip_prefix(&[next]).unwrap_or(a);
+                b = b.strip_prefix(&[next]).unwrap_or(b);
+                if next as usize != node && neighbours[begin..].last() != Some(&next) {
+                    neighbours.push(next);
+                }
+            }
+            starts.push(neighbours.len() as u32);
+        }
+        Self { starts, neighbours }
     }
 
     /// Number of nodes.

@@ -14,6 +14,7 @@ pub struct Solver {
     kind: Kind,
     starts: Vec<u32>,
     rows: Vec<u32>,
+    weak: Vec<u32>,
     scaling: Scaling,
     values: Vec<f64>,
     norm: f64,
@@ -39,6 +40,7 @@ impl Solver {
             kind: pattern.kind,
             starts: pattern.starts.to_vec(),
             rows: pattern.rows.to_vec(),
+            weak: weak.to_vec(),
             scaling: Scaling::new(pattern.size()),
             values: vec![0.0; pattern.rows.len()],
             norm: 0.0,
@@ -61,6 +63,7 @@ impl Solver {
         self.scaling.fit(pattern, entries)?;
         self.values.copy_from_slice(entries);
         self.norm = self.scaling.apply(pattern, &mut self.values);
+        self.factors.reorder(pattern, &self.weak)?;
         self.factors.factor(&self.values)
     }
 

@@ -11,7 +11,7 @@ const FRONT: f64 = 400.0;
 /// Time to clear, assemble and pass on one entry of a front \[ns\].
 const ENTRY: f64 = 0.8;
 /// Time of one operation in a dense block \[ns\].
-const OPERATION: f64 = 0.04;
+pub(crate) const OPERATION: f64 = 0.04;
 /// Largest share of additional entries in a front of more than [`SMALL`] columns.
 const FILL: f64 = 0.25;
 /// Columns up to which additional entries do not matter.
@@ -68,6 +68,13 @@ impl Supernodes {
         let mut groups = Groups::without_fill(tree);
         groups.merge(kind);
         groups.arrange(tree)
+    }
+
+    /// Floating-point operations of a factorisation.
+    pub fn operations(&self, kind: Kind) -> f64 {
+        let widths = self.starts.windows(2).map(|range| (range[1] - range[0]) as usize);
+        let sizes = widths.zip(&self.below).map(|(width, &below)| Size { width, below: below as usize });
+        sizes.map(|size| size.operations(kind)).sum()
     }
 }
 

@@ -191,6 +191,46 @@ fn threads_change_no_more_than_rounding() {
 }
 
 #[test]
+fn nested_dissection_saves_operations_and_needs_no_other_pivots() {
+    let flow = matrix(FLOWS[1], 47);
+    let solid = matrix(Problem::Elasticity, 47).lower();
+    for (a, kind, saved) in [(&flow, Kind::Unsymmetric, 0.0), (&solid, Kind::Symmetric, 0.2)] {
+        let (pattern, weak) = (pattern(a, kind), a.weak());
+        let analyses =
+            [Analysis::new(pattern, &weak), Analysis::thorough(pattern, &weak)].map(Result::unwrap);
+        assert!(analyses[1].operations() < (1.0 - saved) * analyses[0].operations());
+        let [x, y] = analyses.map(|analysis| {
+            let mut factors = Factors::new(analysis).unwrap();
+            assert_eq!(factors.factor(&a.values).unwrap().perturbed, 0);
+            let mut x = noise(a.size());
+            factors.solve(&mut x);
+            x
+        });
+        // without scaling and refinement
+        assert!(difference(&x, &y) < 1e-9, "{}", difference(&x, &y));
+    }
+}
+
+#[test]
+fn a_better_order_is_looked_for_once_it_pays() {
+    let a = matrix(Problem::Elasticity, 30).lower();
+    let mut solver = Solver::new(pattern(&a, Kind::Symmetric), &[]).unwrap();
+    let operations = |solver: &Solver| solver.factors().analysis().operations();
+    let first = operations(&solver);
+    let solution = |solver: &mut Solver| {
+        solver.factor(&a.values).unwrap();
+        let mut x = noise(a.size());
+        solver.solve(&mut x);
+        x
+    };
+    let before = solution(&mut solver);
+    assert_eq!(operations(&solver), first, "one factorisation does not pay for another order");
+    let later = (0..200).map(|_| solution(&mut solver)).last().expect("a solution");
+    assert!(operations(&solver) < first);
+    assert!(difference(&later, &before) < 1e-11);
+}
+
+#[test]
 fn a_pivot_that_is_not_positive_is_named() {
     let mut a = matrix(Problem::Elasticity, 6).lower();
     a.values[a.starts[31] as usize] = -1.0;
@@ -208,6 +248,36 @@ fn a_pressure_without_a_level_is_a_recorded_pivot() {
     assert!(pivots.perturbed == 1 && pivots.smallest < 1e-13, "{pivots:?}");
     let unknown = solver.factors().analysis().order()[pivots.turn];
     assert!(a.weak().contains(&unknown), "{unknown} is no pressure");
+}
+
+#[test]
+fn a_pivot_that_vanishes_inside_its_front_is_recorded_and_repaired() {
+    let a = matrix(Problem::Elasticity, 12);
+    let analysis = Analysis::new(pattern(&a, Kind::Unsymmetric), &[]).unwrap();
+    // the column eliminated first keeps one entry only, in the row of the neighbour that is eliminated last: outside its front
+    let first = analysis.order()[0] as usize;
+    let turn = |k: u32| analysis.order().iter().position(|&other| other == k);
+    let neighbours = &a.rows[a.starts[first] as usize..a.starts[first + 1] as usize];
+    let last = *neighbours.iter().max_by_key(|&&row| turn(row)).expect("a node has neighbours");
+    let mut entries = Vec::new();
+    a.for_each(|row, column, value| {
+        let kept = if column == first { f64::from(u8::from(row == last as usize)) } else { value };
+        entries.push((row as u32, column as u32, kept));
+    });
+    let a = Matrix::from_entries(a.size(), entries);
+    let mut solver = Solver::new(pattern(&a, Kind::Unsymmetric), &[]).unwrap();
+    let pivots = solver.factor(&a.values).unwrap();
+    assert_eq!(pivots.perturbed, 1, "{pivots:?}");
+    assert_eq!(solver.factors().analysis().order()[pivots.turn] as usize, first);
+    let wanted = noise(a.size());
+    let mut b = vec![0.0; a.size()];
+    a.for_each(|row, column, value| b[row] += value * wanted[column]);
+    let mut x = b.clone();
+    let report = solver.solve(&mut x);
+    assert!(report.refinements > 0 && report.relative_residual <= 1e-12, "{report:?}");
+    // rounding times a condition number of some 1e5
+    let error = difference(&x, &wanted).max(difference(&x, &reference(&a, &b)));
+    assert!(error < 1e-10, "{error}");
 }
 
 /// The cavity: velocities on the upper side are held too, by rows and columns of the identity.

@@ -224,6 +224,7 @@ impl AllFactors {
     /// Cholesky, or `None` when a pivot is not positive.
     fn cholesky(&mut self, matrix: &ScaledMatrix) -> Result<Option<FactorReport>, LinearError> {
         let Some(factor) = &mut self.definite else { return Ok(None) };
+        factor.reorder(matrix.pattern().view(), &[])?;
         match factor.factor(matrix.values()) {
             Err(Error::NotPositive { .. }) => Ok(None),
             Err(error) => Err(error.into()),

@@ -52,6 +52,13 @@ impl Probe<'_> {
         self.system.equations[unknown] != NONE
     }
 
+    /// The sparse part of the tangent last assembled, equation by equation: start of every column, row and value of every entry. Of a symmetric
+    /// system it is the lower triangle.
+    pub fn sparse_tangent(&self) -> (&[u32], &[u32], &[f64]) {
+        let pattern = &self.system.pattern;
+        (pattern.column_starts(), pattern.rows(), &self.system.values[..pattern.entries()])
+    }
+
     /// Product of the tangent last assembled with a vector; rows and columns of held unknowns are zero.
     pub fn tangent_times(&self, vector: &[f64]) -> Vec<f64> {
         let system = &*self.system;

@@ -76,8 +76,11 @@ impl UnsymmetricFactor {
     pub fn factor(&mut self, matrix: &ScaledMatrix) -> Result<(), LinearError> {
         self.load(matrix);
         let mut fronts = match self.fronts.take() {
-            Some(fronts) => fronts,
-            None => self.analyse()?,
+            Some(mut fronts) => {
+                fronts.reorder(self.pattern.view(), &self.weak_unknowns())?;
+                fronts
+            }
+            None => Factors::new(Analysis::new(self.pattern.view(), &self.weak_unknowns())?)?,
         };
         let pivots = fronts.factor(&self.values)?;
         self.perturbed = pivots.perturbed > 0;
@@ -107,9 +110,8 @@ impl UnsymmetricFactor {
         }
     }
 
-    fn analyse(&self) -> Result<Factors, LinearError> {
-        let weak: Vec<u32> = (0..self.weak.len() as u32).filter(|&k| self.weak[k as usize]).collect();
-        Ok(Factors::new(Analysis::new(self.pattern.view(), &weak)?)?)
+    fn weak_unknowns(&self) -> Vec<u32> {
+        (0..self.weak.len() as u32).filter(|&k| self.weak[k as usize]).collect()
     }
 
     /// Solves for a known solution of ones.

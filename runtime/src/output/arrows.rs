@@ -8,13 +8,14 @@ const RASTER: f64 = 16.0;
 /// Length of the longest arrow [pixels].
 const LONGEST: f64 = 24.0;
 /// Shorter ones are left out [pixels].
-const SHORTEST: f64 = 2.0;
+const SHORTEST: f64 = 6.0;
 /// Length of the two strokes of the head, as a part of the arrow.
 const HEAD: f64 = 0.35;
 /// Cosine and sine of the angle between head and shaft.
 const SPREAD: [f64; 2] = [0.866, 0.5];
 
-/// Draws vectors at pixels, y upwards in the vectors; the longest of them all is drawn with the full length.
+/// Draws vectors at pixels, y upwards in the vectors. Lengths follow the square root of the magnitude, so that slow parts show their direction too; the
+/// largest vector gets the full length.
 pub fn draw(canvas: &mut Canvas, arrows: &[([f64; 2], [f64; 2])], ink: Rgb) {
     let largest = arrows.iter().map(|(_, v)| v[0].hypot(v[1])).fold(0.0, f64::max);
     if !(largest > 0.0 && largest.is_finite()) {
@@ -32,9 +33,10 @@ pub fn draw(canvas: &mut Canvas, arrows: &[([f64; 2], [f64; 2])], ink: Rgb) {
     }
     for (_, k) in squares.into_values() {
         let (at, vector) = arrows[k];
-        let shaft = [vector[0], -vector[1]].map(|x| x * LONGEST / largest);
-        if shaft[0].hypot(shaft[1]) >= SHORTEST {
-            arrow(canvas, at, shaft, ink);
+        let magnitude = vector[0].hypot(vector[1]);
+        let length = LONGEST * (magnitude / largest).sqrt();
+        if length >= SHORTEST {
+            arrow(canvas, at, [vector[0], -vector[1]].map(|x| x * length / magnitude), ink);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use ansatz::generated::{ObservableKind, Program};
 use ansatz::system::{StageProblem, System};
+use ansatz_models::{dry_contact, wet_contact};
 use ansatz_tests::differences::{assert_agree, derivative};
 use ansatz_tests::models::{channel, coupled, film, plates};
 use ansatz_tests::notes::Notes;
@@ -104,4 +105,14 @@ fn of_the_dry_model_and_its_variants() {
     for program in ansatz_models::PROGRAMS {
         tangent_is_exact(program, &[("coarse", "4")], up);
     }
+}
+
+#[test]
+fn steps_follow_fields_with_rates_and_not_what_follows_from_them() {
+    let with_rates = |program: &Program| -> Vec<&str> {
+        program.fields.iter().filter(|field| field.differential).map(|field| field.name).collect()
+    };
+    assert_eq!(with_rates(&wet_contact::PROGRAM), ["u", "v"], "neither rotation, thickness nor pressure");
+    assert_eq!(with_rates(&dry_contact::PROGRAM), ["u"]);
+    assert!(with_rates(&ansatz_tests::models::patch_plane::PROGRAM).is_empty(), "nothing moves in time");
 }

@@ -14,15 +14,34 @@ const HEAD: f64 = 0.35;
 /// Cosine and sine of the angle between head and shaft.
 const SPREAD: [f64; 2] = [0.866, 0.5];
 
-/// Draws vectors at pixels, y upwards in the vectors. Lengths follow the square root of the magnitude, so that slow parts show their direction too; the
-/// largest vector gets the full length.
-pub fn draw(canvas: &mut Canvas, arrows: &[([f64; 2], [f64; 2])], ink: Rgb) {
-    let largest = arrows.iter().map(|(_, v)| v[0].hypot(v[1])).fold(0.0, f64::max);
+/// A pixel and a vector there, or the shaft drawn for it.
+type Arrow = ([f64; 2], [f64; 2]);
+
+/// Draws vectors at pixels, y upwards in the vectors.
+pub fn draw(canvas: &mut Canvas, vectors: &[Arrow], ink: Rgb) {
+    shafts(vectors).into_iter().for_each(|(at, shaft)| arrow(canvas, at, shaft, ink));
+}
+
+/// The arrows to be drawn, y downwards: in each square of the raster the one nearest to its middle. Lengths follow the square root of the magnitude,
+/// so that slow parts show their direction too; the largest vector gets the full length.
+fn shafts(vectors: &[Arrow]) -> Vec<Arrow> {
+    let largest = vectors.iter().map(|(_, v)| v[0].hypot(v[1])).fold(0.0, f64::max);
     if !(largest > 0.0 && largest.is_finite()) {
-        return;
+        return Vec::new();
     }
+    let shaft = |k: usize| {
+        let (at, vector) = vectors[k];
+        let magnitude = vector[0].hypot(vector[1]);
+        let length = LONGEST * (magnitude / largest).sqrt();
+        (length >= SHORTEST).then(|| (at, [vector[0], -vector[1]].map(|x| x * length / magnitude)))
+    };
+    spread(vectors).into_iter().filter_map(shaft).collect()
+}
+
+/// The vector nearest to the middle of each square of the raster.
+fn spread(vectors: &[Arrow]) -> Vec<usize> {
     let mut squares: BTreeMap<[i64; 2], (f64, usize)> = BTreeMap::new();
-    for (k, (at, _)) in arrows.iter().enumerate() {
+    for (k, (at, _)) in vectors.iter().enumerate() {
         let square = at.map(|x| (x / RASTER).floor() as i64);
         let off = [0, 1].map(|i| at[i] / RASTER - square[i] as f64 - 0.5);
         let distance = off[0].hypot(off[1]);
@@ -31,14 +50,7 @@ pub fn draw(canvas: &mut Canvas, arrows: &[([f64; 2], [f64; 2])], ink: Rgb) {
             *nearest = (distance, k);
         }
     }
-    for (_, k) in squares.into_values() {
-        let (at, vector) = arrows[k];
-        let magnitude = vector[0].hypot(vector[1]);
-        let length = LONGEST * (magnitude / largest).sqrt();
-        if length >= SHORTEST {
-            arrow(canvas, at, [vector[0], -vector[1]].map(|x| x * length / magnitude), ink);
-        }
-    }
+    squares.into_values().map(|(_, k)| k).collect()
 }
 
 /// An arrow centred at `at`, in ink on a light seam.
@@ -56,4 +68,30 @@ fn arrow(canvas: &mut Canvas, at: [f64; 2], shaft: [f64; 2], ink: Rgb) {
         }
     }
     lines.into_iter().for_each(|(from, to)| canvas.line(from, to, ink));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_arrow_a_square_and_none_too_short_to_be_seen() {
+        let at = |x: f64| [x, 0.5 * RASTER];
+        let vectors = [
+            (at(0.4 * RASTER), [0.0, 4.0]),
+            (at(0.1 * RASTER), [3.0, 0.0]),
+            (at(1.5 * RASTER), [1.0, 0.0]),
+            (at(2.5 * RASTER), [0.01, 0.0]),
+        ];
+        let drawn = shafts(&vectors);
+        assert_eq!(drawn.len(), 2, "the second shares its square with the first, the last is slow");
+        assert_eq!(drawn[0], (vectors[0].0, [0.0, -LONGEST]), "pixels count downwards");
+        assert_eq!(drawn[1].1, [0.5 * LONGEST, 0.0], "a quarter of the speed, half of the length");
+    }
+
+    #[test]
+    fn nothing_that_moves_is_no_arrow() {
+        assert!(shafts(&[([8.0, 8.0], [0.0, 0.0])]).is_empty());
+        assert!(shafts(&[]).is_empty());
+    }
 }

@@ -310,6 +310,8 @@ pub enum Action {
     Warn(String),
     /// Give a state a new value.
     Set(StateId, Expr),
+    /// Mesh moving regions anew.
+    Remesh(Domain),
 }
 
 /// When an event fires.

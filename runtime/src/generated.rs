@@ -483,6 +483,8 @@ pub enum Action {
     Warn(&'static str),
     /// Give a state a new value.
     Set(usize, fn(g: &[f64]) -> f64),
+    /// Make the meshes of moving regions anew.
+    Remesh,
 }
 
 /// Time integrators.

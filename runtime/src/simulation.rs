@@ -35,9 +35,9 @@ impl Simulation {
         let sizing = (program.sizing)(&g);
         let moving: Vec<&str> = program.moving.iter().map(|moving| moving.region).collect();
         let mut mesh = Mesh::generate_bodies(&geometry, &sizing, &moving).map_err(mesh_error)?;
-        let followers = followers(program, &geometry, &sizing, &g)?;
+        let mut followers = followers(program, &geometry, &sizing, &g)?;
         let at_rest = mesh.nodes.clone();
-        for follower in &followers {
+        for follower in &mut followers {
             follower.attach(&mut mesh, &at_rest).map_err(mesh_error)?;
         }
         Self::put_on(program, parameters, mesh, followers)
@@ -194,7 +194,7 @@ impl ImplicitSystem for Discretised {
         self.system.set_states(time, y, values)
     }
 
-    fn renew(&mut self, point: &Point) -> Result<Option<Transfer>, SolveError> {
+    fn renew(&mut self, point: &Point, anew: bool) -> Result<Option<Transfer>, SolveError> {
         if !self.system.has_moving_regions() {
             return Ok(None);
         }
@@ -207,7 +207,7 @@ impl ImplicitSystem for Discretised {
             place: String::new(),
             terms: Vec::new(),
         };
-        let transfer = self.system.remesh(&point.values).map_err(stuck)?;
+        let transfer = self.system.follow_bodies(&point.values, anew).map_err(stuck)?;
         self.frames = samplers(&self.system).map_err(stuck)?;
         Ok(Some(transfer))
     }

@@ -137,6 +137,7 @@ fn describe(program: &Program, simulation: &Simulation, error: Option<&Error>) -
         unknowns: system.unknowns.length,
         equations: system.equation_count(),
         matrix_entries: system.matrix_entries(),
+        meshings: system.meshings,
         events,
         wall_seconds: 0.0,
         error: error.map(ToString::to_string),

@@ -18,12 +18,13 @@ ansatz::include_model!("../models/balloon.ansatz");
 ansatz::include_model!("../models/cave_in.ansatz");
 ansatz::include_model!("../models/turek_csm1.ansatz");
 ansatz::include_model!("../models/filled_block.ansatz");
+ansatz::include_model!("../models/refreshed_block.ansatz");
 ansatz::include_model!("../models/sheet.ansatz");
 
 use ansatz::generated::Program;
 
 /// All of them.
-pub static PROGRAMS: [&Program; 19] = [
+pub static PROGRAMS: [&Program; 20] = [
     &patch_plane::PROGRAM,
     &patch_axi::PROGRAM,
     &crushed::PROGRAM,
@@ -42,5 +43,6 @@ pub static PROGRAMS: [&Program; 19] = [
     &cave_in::PROGRAM,
     &turek_csm1::PROGRAM,
     &filled_block::PROGRAM,
+    &refreshed_block::PROGRAM,
     &sheet::PROGRAM,
 ];

@@ -2,18 +2,35 @@
 
 use ansatz::generated::Program;
 use ansatz_examples::squeeze_film;
-use ansatz_tests::models::filled_block;
+use ansatz_tests::models::{filled_block, refreshed_block};
 use ansatz_tests::notes::Notes;
 
 /// All rows of a model's table, some parameters set.
 fn rows(program: &'static Program, set: &[(&str, &str)]) -> Vec<Vec<f64>> {
+    run(program, set).0
+}
+
+/// The same, and how often moving regions were meshed.
+fn run(program: &'static Program, set: &[(&str, &str)]) -> (Vec<Vec<f64>>, usize) {
     let set: Vec<_> = set.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
     let values = ansatz::settings::resolve(program, &set).expect("they are parameters");
     let mut notes = Notes::default();
-    ansatz::Simulation::new(program, &values)
-        .and_then(|mut simulation| simulation.run(&mut notes, None))
-        .unwrap_or_else(|error| panic!("{error}"));
-    notes.rows.into_iter().map(|(_, row)| row).collect()
+    let mut simulation = ansatz::Simulation::new(program, &values).unwrap_or_else(|error| panic!("{error}"));
+    simulation.run(&mut notes, None).unwrap_or_else(|error| panic!("{error}"));
+    (notes.rows.into_iter().map(|(_, row)| row).collect(), simulation.system().meshings)
+}
+
+#[test]
+fn cells_of_a_liquid_go_along_with_the_body_until_an_event_makes_them_anew() {
+    let ((moved, once), (renewed, meshings)) =
+        (run(&filled_block::PROGRAM, &[]), run(&refreshed_block::PROGRAM, &[]));
+    assert_eq!(once, 1, "the block is pressed by a tenth, which its first cells bear");
+    assert_eq!(meshings, renewed.len() - 1, "one mesh for each step");
+    for (moved, renewed) in moved.iter().zip(&renewed) {
+        for (k, (a, b)) in moved.iter().zip(renewed).enumerate() {
+            assert!((a - b).abs() <= 1e-3 * b.abs(), "column {k}: {a} on the first cells, {b} on new ones");
+        }
+    }
 }
 
 // The shape of the liquid is that of the start of each step, so its volume drifts with the square of the steps in each, with the steps in all.

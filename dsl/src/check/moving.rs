@@ -5,7 +5,7 @@ use super::shape::settle;
 use super::{Checked, Checker, Env, Reported};
 use crate::diagnostic::{Code, Diagnostic, Sink};
 use crate::model::{
-    Expr, ExprKind, Field, FieldId, Model, Moving, Piece, RegionId, StatementKind, Tie, Type,
+    Action, Expr, ExprKind, Field, FieldId, Model, Moving, Piece, RegionId, StatementKind, Tie, Type,
 };
 use crate::source::Span;
 use crate::syntax::ast;
@@ -24,7 +24,7 @@ impl Checker<'_> {
             ast::Motion::Solved { .. } => {
                 return Err(self.report(
                     Diagnostic::error(Code::Unsupported, span, "mesh motion by equations is not supported")
-                        .help("`moving D by u;` meshes the region anew after every step"),
+                        .help("`moving D by u;` lets the region follow the displacement of the bodies around it"),
                 ));
             }
         };
@@ -142,6 +142,17 @@ pub(super) fn check(model: &Model, sink: &mut Sink) {
             sink.push(
                 Diagnostic::error(Code::Misplaced, field.span, message)
                     .help("declare two fields, and `tie` them where the regions meet"),
+            );
+        }
+    }
+    let stays = |piece: &&Piece| !matches!(piece, Piece::Region(region) if moves(region));
+    for action in model.events.iter().flat_map(|event| &event.actions) {
+        let Action::Remesh(domain) = action else { continue };
+        if let Some(&piece) = domain.pieces.iter().find(stays) {
+            let words = piece_words(&model.geometry, &model.pairs, piece);
+            sink.push(
+                Diagnostic::error(Code::Misplaced, domain.span, format!("{words} is no region that moves"))
+                    .help("`remesh(D)` is for what is declared `moving D by u;`; bodies keep their mesh"),
             );
         }
     }

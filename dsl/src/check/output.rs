@@ -134,14 +134,12 @@ impl Checker<'_> {
                 Ok(vec![Action::Warn(text.clone())])
             }
             ("set", args) if !args.is_empty() => args.iter().map(|arg| self.set_state(arg)).collect(),
-            ("remesh", _) => Err(self.report(Diagnostic::error(
-                Code::Unsupported,
-                action.span,
-                "remeshing is not supported",
-            ))),
-            ("stop" | "warn" | "set", _) => Err(self.report(
+            ("remesh", [ast::Arg { name: None, value, .. }]) => {
+                Ok(vec![Action::Remesh(self.domain(value, &Env::default())?)])
+            }
+            ("stop" | "warn" | "set" | "remesh", _) => Err(self.report(
                 Diagnostic::error(Code::MissingArgument, action.span, "this action has other arguments")
-                    .help("write `stop`, `warn(\"text\")` or `set(x: value)`"),
+                    .help("write `stop`, `warn(\"text\")`, `set(x: value)` or `remesh(D)`"),
             )),
             (other, _) => Err(self.report(
                 Diagnostic::error(
@@ -149,8 +147,8 @@ impl Checker<'_> {
                     action.name.span,
                     format!("there is no action `{other}`"),
                 )
-                .help_did_you_mean(other, ["stop", "warn", "set"])
-                .help("the actions are `stop`, `warn(\"text\")` and `set(x: value)`"),
+                .help_did_you_mean(other, ["stop", "warn", "set", "remesh"])
+                .help("the actions are `stop`, `warn(\"text\")`, `set(x: value)` and `remesh(D)`"),
             )),
         }
     }

@@ -205,6 +205,7 @@ impl Model {
             Action::Stop => "stop".into(),
             Action::Warn(text) => format!("warn(\"{text}\")"),
             Action::Set(id, value) => format!("set({}: {})", self.states[id.0].name, self.expr(value)),
+            Action::Remesh(domain) => format!("remesh({})", self.domain(domain)),
         });
         let actions = actions.collect::<Vec<String>>().join(", ");
         let arrow = if actions.is_empty() { "" } else { " => " };

@@ -172,6 +172,7 @@ fn one_event(lowering: &mut Lowering<'_>, slots: &Slots, event: &Event) -> Token
     let actions = event.actions.iter().map(|action| match action {
         Action::Stop => quote!(Action::Stop),
         Action::Warn(text) => quote!(Action::Warn(#text)),
+        Action::Remesh => quote!(Action::Remesh),
         Action::Set(state, value) => {
             let (state, value) = (Literal::usize_unsuffixed(state.0), closure(lowering, slots, *value));
             quote!(Action::Set(#state, #value))

@@ -36,6 +36,8 @@ pub enum Action {
     Warn(String),
     /// Give a state a new value.
     Set(StateId, Id),
+    /// Mesh moving regions anew.
+    Remesh,
 }
 
 impl Event {
@@ -78,6 +80,7 @@ fn lower_event<'m>(lowering: &mut Lowering<'m>, rows: &[usize], event: &'m model
         actions.push(match action {
             model::Action::Stop => Action::Stop,
             model::Action::Warn(text) => Action::Warn(text.clone()),
+            model::Action::Remesh(_) => Action::Remesh,
             model::Action::Set(state, value) => {
                 let value = lowering.global_scalar(value)?;
                 Action::Set(*state, observed(lowering, rows, value)?)

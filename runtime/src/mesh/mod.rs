@@ -10,12 +10,14 @@
 mod assemble;
 mod delaunay;
 mod error;
+mod filling;
 mod film;
 mod follow;
 mod front;
 mod generate;
 mod hilbert;
 mod locate;
+mod motion;
 mod outline;
 mod quality;
 mod sizing;

@@ -385,12 +385,27 @@ fn followed(u: impl Fn(f64) -> f64) -> Result<(Mesh, Vec<Point>), MeshError> {
 
 /// The same with sizes from the gap.
 fn followed_with(u: impl Fn(f64) -> f64, films: Vec<FilmSize>) -> Result<(Mesh, Vec<Point>), MeshError> {
+    let (mesh, positions, _) = following(u, films)?;
+    Ok((mesh, positions))
+}
+
+/// The same with what follows.
+fn following(
+    u: impl Fn(f64) -> f64,
+    films: Vec<FilmSize>,
+) -> Result<(Mesh, Vec<Point>, Follower), MeshError> {
     let (geometry, sizing) = (channel_between_plates(), everywhere(0.5));
     let mut mesh = Mesh::generate_bodies(&geometry, &sizing, &["channel"])?;
+    let positions = upper_wall_moved(&mesh, u);
+    let mut follower = Follower::new(&geometry, 2, &sizing, films)?;
+    follower.attach(&mut mesh, &positions)?;
+    Ok((mesh, positions, follower))
+}
+
+/// Places of the bodies' nodes with the upper wall displaced by `u(x)`.
+fn upper_wall_moved(mesh: &Mesh, u: impl Fn(f64) -> f64) -> Vec<Point> {
     let moved = |&[x, y]: &Point| [x, if y > 0.0 { y * (1.0 + u(x)) } else { y }];
-    let positions: Vec<Point> = mesh.nodes.iter().map(moved).collect();
-    Follower::new(&geometry, 2, &sizing, films)?.attach(&mut mesh, &positions)?;
-    Ok((mesh, positions))
+    mesh.nodes[..mesh.body_nodes].iter().map(moved).collect()
 }
 
 #[test]
@@ -408,6 +423,36 @@ fn a_region_between_bodies_takes_the_shape_that_they_leave_it() {
     assert!(mesh.path_edges("channel/outlet").all(|edge| edge.left.is_some() != edge.right.is_some()));
     let bodies = mesh.bodies();
     assert_eq!((bodies.cells.len(), bodies.regions.len()), (mesh.body_cells, 2));
+}
+
+#[test]
+fn cells_go_along_with_the_bodies_around_them() {
+    let (mesh, _, mut follower) = following(|_| 0.0, Vec::new()).expect("there is room");
+    let (mut moved, positions) = (mesh.clone(), upper_wall_moved(&mesh, |x| 0.1 * x));
+    assert!(follower.advance(&mut moved, &positions).expect("there is room"), "the cells bear it");
+    assert_conforming(&moved);
+    assert_eq!(moved.cells, mesh.cells);
+    assert!((moved.region_area("channel") - 4.8).abs() < 1e-12, "{}", moved.region_area("channel"));
+    for [moving, body] in &moved.links {
+        assert_eq!(moved.nodes[*moving as usize], positions[*body as usize]);
+    }
+    assert!(moved.quality().smallest > 0.3);
+    let back = upper_wall_moved(&mesh, |_| 0.0);
+    assert!(follower.advance(&mut moved, &back).expect("there is room"));
+    let off = |(a, b): (&Point, &Point)| ansatz_geometry::point::distance(*a, *b);
+    let furthest = moved.nodes.iter().zip(&mesh.nodes).map(off).fold(0.0, f64::max);
+    assert!(furthest < 1e-12, "back where they were but for {furthest:e}");
+}
+
+#[test]
+fn cells_that_would_become_too_flat_or_too_large_for_a_film_stay_where_they_are() {
+    let (mesh, _, mut follower) = following(|_| 0.0, vec![on_walls(|gap| gap / 4.0)]).expect("there is room");
+    for (u, why) in [(4.0, "stretched to five times their height"), (-0.35, "a film of two thirds")] {
+        let mut moved = mesh.clone();
+        let positions = upper_wall_moved(&mesh, |_| u);
+        assert!(!follower.advance(&mut moved, &positions).expect("sizes are positive"), "{why}");
+        assert_eq!(moved, mesh, "{why}");
+    }
 }
 
 /// `size(gap)` on both walls of the channel.

@@ -21,7 +21,7 @@ use std::path::Path;
 fn warnings(event: &Event) -> impl Iterator<Item = &'static str> {
     event.actions.iter().filter_map(|action| match action {
         Action::Warn(text) => Some(*text),
-        Action::Stop | Action::Set(..) => None,
+        Action::Stop | Action::Set(..) | Action::Remesh => None,
     })
 }
 

@@ -23,6 +23,8 @@ pub struct Run {
     pub equations: usize,
     /// Stored entries of its matrix.
     pub matrix_entries: usize,
+    /// How often moving regions were meshed.
+    pub meshings: usize,
     /// Events (name, time) in the order in which they fired.
     pub events: Vec<(String, f64)>,
     /// Wall-clock time \[s\].
@@ -75,6 +77,9 @@ struct MeshStatistics {
     nodes: usize,
     smallest_quality: f64,
     mean_quality: f64,
+    /// How often moving regions were meshed, where there are any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    meshings: Option<usize>,
 }
 
 #[derive(Serialize)]
@@ -126,6 +131,7 @@ pub fn write(
             nodes: mesh.nodes.len(),
             smallest_quality: quality.smallest,
             mean_quality: quality.mean,
+            meshings: (!program.moving.is_empty()).then_some(run.meshings),
         },
         solver: Solver {
             unknowns: run.unknowns,

@@ -64,6 +64,8 @@ pub struct System {
     pub mesh: Mesh,
     /// What meshes the moving regions, in the program's order.
     followers: Vec<Follower>,
+    /// How often the moving regions were meshed.
+    pub meshings: usize,
     /// Numbering of y.
     pub unknowns: Unknowns,
     /// Settings of the solution.
@@ -168,6 +170,7 @@ impl System {
             settings,
             mesh,
             followers,
+            meshings: 1,
             unknowns,
             g,
             held,
@@ -234,12 +237,8 @@ impl System {
         self.diagonal = diagonal.collect();
         let mut follows = vec![false; self.unknowns.length];
         self.ties.iter().filter(|tied| tied.rate).for_each(|tied| follows[tied.unknown] = true);
-        let of_functionals = self.functionals.iter_mut().flat_map(|f| f.terms_mut());
-        for term in self.terms.iter_mut().chain(of_functionals) {
-            if term.integral.tangent.is_some() {
-                term.locate(&self.pattern, &self.equations, &follows);
-            }
-        }
+        in_the_matrix_mut(&mut self.terms, &mut self.functionals)
+            .for_each(|term| term.locate(&self.pattern, &self.equations, &follows));
         Ok(())
     }
 }
@@ -248,6 +247,15 @@ impl System {
 fn in_the_matrix<'a>(terms: &'a [Term], functionals: &'a [FunctionalOn]) -> impl Iterator<Item = &'a Term> {
     let of_functionals = functionals.iter().flat_map(|f| f.terms());
     terms.iter().chain(of_functionals).filter(|term| term.integral.tangent.is_some())
+}
+
+/// The same, to be changed.
+fn in_the_matrix_mut<'a>(
+    terms: &'a mut [Term],
+    functionals: &'a mut [FunctionalOn],
+) -> impl Iterator<Item = &'a mut Term> {
+    let of_functionals = functionals.iter_mut().flat_map(FunctionalOn::terms_mut);
+    terms.iter_mut().chain(of_functionals).filter(|term| term.integral.tangent.is_some())
 }
 
 /// A solver for the pattern. Without any equation it is one for a single equation, which is never asked.

@@ -78,6 +78,12 @@ impl Term {
         }
     }
 
+    /// Takes those places from the same integral on the same cells.
+    pub fn take_places(&mut self, from: &mut Self) {
+        self.positions = std::mem::take(&mut from.positions);
+        self.mirrored = std::mem::take(&mut from.mirrored);
+    }
+
     /// Value of the integral; 0 if the integrand has none.
     pub fn value(&mut self, at: At<'_>) -> f64 {
         let Some(kernel) = self.integral.value else { return 0.0 };

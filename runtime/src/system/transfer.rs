@@ -1,13 +1,13 @@
-//! From one mesh to the next: regions that follow bodies are meshed anew, and everything that was known there goes along.
+//! From one mesh to the next: cells of regions that follow bodies go along or are made anew, and so does everything that was known there.
 //!
 //! Unknowns of bodies, states and functionals stay what they are; those of moving regions take the values that the old mesh has at the places of
 //! the new nodes, or at the nearest old node where the region has just come.
 
-use super::System;
 use super::unknowns::{FieldNumbers, Unknowns};
+use super::{System, in_the_matrix_mut};
 use crate::error::Error;
 use crate::generated::Domain;
-use crate::mesh::{Locator, Mesh, MeshError};
+use crate::mesh::{Follower, Locator, Mesh, MeshError};
 use ansatz_elements::Element;
 use ansatz_geometry::point;
 
@@ -55,34 +55,74 @@ impl System {
         self.program.moving.iter().any(|moving| lives(moving.region))
     }
 
-    /// Meshes moving regions anew around bodies displaced as in y, and goes on from there. How unknowns go along.
+    /// Lets moving regions follow bodies displaced as in y, and goes on from there: their cells go along, or are made anew where they would lose
+    /// their shape, and in any case if `anew`. How unknowns go along.
     ///
     /// # Errors
     /// Bodies that run into each other.
-    pub fn remesh(&mut self, y: &[f64]) -> Result<Transfer, Error> {
-        let mut mesh = self.mesh.bodies();
-        for (follower, moving) in self.followers.iter().zip(self.program.moving) {
-            let positions = self.positions(&mesh, moving.displacement, y);
-            follower.attach(&mut mesh, &positions).map_err(|e: MeshError| Error::Mesh(e.to_string()))?;
-        }
+    pub fn follow_bodies(&mut self, y: &[f64], anew: bool) -> Result<Transfer, Error> {
+        let mesh_error = |e: MeshError| Error::Mesh(e.to_string());
+        let mut followers = std::mem::take(&mut self.followers);
+        let moved = if anew { None } else { self.moved(&mut followers, y).map_err(mesh_error)? };
+        let same_cells = moved.is_some();
+        let mesh = moved.map_or_else(|| self.meshed_anew(&mut followers, y).map_err(mesh_error), Ok)?;
         let parameters = self.program.layout.parameters;
         let parameters = self.g[parameters[0]..parameters[1]].to_vec();
-        let followers = std::mem::take(&mut self.followers);
-        let old = std::mem::replace(self, Self::without_pattern(self.program, &parameters, mesh, followers)?);
+        let mut old =
+            std::mem::replace(self, Self::without_pattern(self.program, &parameters, mesh, followers)?);
         let transfer = self.transfer(&old.mesh, &old.unknowns);
         let y = transfer.apply(y);
-        self.rebuild_pattern(&y)?;
+        if same_cells {
+            self.keep_pattern(&mut old);
+        } else {
+            self.rebuild_pattern(&y)?;
+        }
+        self.meshings = old.meshings + usize::from(!same_cells);
         self.take_over(&old, &y)?;
         Ok(transfer)
     }
 
+    /// The mesh whose cells have gone along; none where some cannot.
+    fn moved(&self, followers: &mut [Follower], y: &[f64]) -> Result<Option<Mesh>, MeshError> {
+        let mut mesh = self.mesh.clone();
+        for (follower, moving) in followers.iter_mut().zip(self.program.moving) {
+            let positions = self.positions(moving.displacement, y);
+            if !follower.advance(&mut mesh, &positions)? {
+                return Ok(None);
+            }
+        }
+        Ok(Some(mesh))
+    }
+
+    fn meshed_anew(&self, followers: &mut [Follower], y: &[f64]) -> Result<Mesh, MeshError> {
+        let mut mesh = self.mesh.bodies();
+        for (follower, moving) in followers.iter_mut().zip(self.program.moving) {
+            follower.attach(&mut mesh, &self.positions(moving.displacement, y))?;
+        }
+        Ok(mesh)
+    }
+
+    /// Takes the pattern and all that depends on it from a system with the same cells.
+    fn keep_pattern(&mut self, old: &mut Self) {
+        std::mem::swap(&mut self.pattern, &mut old.pattern);
+        std::mem::swap(&mut self.solver, &mut old.solver);
+        std::mem::swap(&mut self.pairs, &mut old.pairs);
+        std::mem::swap(&mut self.values, &mut old.values);
+        std::mem::swap(&mut self.diagonal, &mut old.diagonal);
+        self.factored = old.factored;
+        let new = in_the_matrix_mut(&mut self.terms, &mut self.functionals);
+        let old = in_the_matrix_mut(&mut old.terms, &mut old.functionals);
+        new.zip(old).for_each(|(new, old)| new.take_places(old));
+    }
+
     /// Places of the bodies' nodes. Paths that bound no body, such as an outlet, stretch between their ends.
-    fn positions(&self, bodies: &Mesh, displacement: usize, y: &[f64]) -> Vec<[f64; 2]> {
+    fn positions(&self, displacement: usize, y: &[f64]) -> Vec<[f64; 2]> {
+        let bodies = &self.mesh;
         let field = &self.unknowns.fields[displacement];
         let moved = |node: u32| [0, 1].map(|c| field.unknown(node as usize, c).map_or(0.0, |u| y[u]));
-        let nodes = (0..bodies.nodes.len() as u32).zip(&bodies.nodes);
+        let nodes = (0..bodies.body_nodes as u32).zip(&bodies.nodes);
         let mut positions: Vec<[f64; 2]> = nodes.map(|(node, &x)| point::add(x, moved(node))).collect();
-        for path in &bodies.paths {
+        for path in bodies.paths.iter().filter(|path| path.seen_from.is_none()) {
             let [Some(first), Some(last)] = [path.edges.first(), path.edges.last()] else { continue };
             let ends = [first.nodes[0], last.nodes[1]];
             let [start, end] = ends.map(|node| bodies.nodes[node as usize]);

@@ -62,11 +62,12 @@ pub trait ImplicitSystem {
     /// Gives states (by number) new values and makes `y` consistent with them at `time`.
     fn set_states(&mut self, time: f64, y: &mut [f64], values: &[(usize, f64)]) -> Result<(), SolveError>;
 
-    /// Prepares the step after an accepted point. How unknowns go along, where they are numbered anew.
+    /// Prepares the step after an accepted point; with new meshes of moving regions if they are asked for `anew`. How unknowns go along, where they
+    /// are carried to other places.
     ///
     /// # Errors
     /// What was prepared cannot go on from there.
-    fn renew(&mut self, _point: &Point) -> Result<Option<Transfer>, SolveError> {
+    fn renew(&mut self, _point: &Point, _anew: bool) -> Result<Option<Transfer>, SolveError> {
         Ok(None)
     }
 

@@ -116,16 +116,17 @@ impl Run<'_> {
         };
         let seen = self.cut_at_event(seen);
         let fired = self.take(seen)?;
+        let anew = fired.iter().any(|f| remeshes(&self.plan.events[f.event]));
         let ended = self.act(fired)?;
         if ended.is_some() || self.march.last().time >= end {
             return Ok(ended);
         }
-        Ok(self.renew().err().map(|error| End::Diverged(Box::new(error))))
+        Ok(self.renew(anew).err().map(|error| End::Diverged(Box::new(error))))
     }
 
     /// Lets the system prepare the next step.
-    fn renew(&mut self) -> Result<(), SolveError> {
-        if let Some(transfer) = self.system.renew(self.march.last())? {
+    fn renew(&mut self, anew: bool) -> Result<(), SolveError> {
+        if let Some(transfer) = self.system.renew(self.march.last(), anew)? {
             self.march.carry(&transfer, self.system.groups());
         }
         Ok(())
@@ -224,7 +225,7 @@ impl Run<'_> {
         let actions = fired.iter().flat_map(|f| self.plan.events[f.event].actions);
         let set = |action: &Action| match action {
             Action::Set(state, value) => Some((*state, value(&self.globals))),
-            Action::Stop | Action::Warn(_) => None,
+            Action::Stop | Action::Warn(_) | Action::Remesh => None,
         };
         actions.filter_map(set).collect()
     }
@@ -241,4 +242,8 @@ impl Run<'_> {
 
 fn stops(event: &Event) -> bool {
     event.actions.iter().any(|action| matches!(action, Action::Stop))
+}
+
+fn remeshes(event: &Event) -> bool {
+    event.actions.iter().any(|action| matches!(action, Action::Remesh))
 }

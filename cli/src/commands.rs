@@ -1,7 +1,7 @@
 //! What each command does.
 
 use crate::files::{compile_file, model_file};
-use crate::project;
+use crate::project::{self, Machine};
 use ansatz_dsl::compile::{Compilation, Output};
 use ansatz_dsl::diagnostic::{Style, render_with};
 use std::io::IsTerminal;
@@ -36,7 +36,7 @@ pub fn expand(model: &Path, stage: &str) -> Outcome {
 
 /// `ansatz run`: builds the simulator and runs it.
 pub fn run(model: &Path, arguments: &[String]) -> Outcome {
-    let program = build_simulator(model)?;
+    let program = build_simulator(model, Machine::This)?;
     let status = Command::new(&program).args(arguments).status();
     let status = status.map_err(|e| format!("error: cannot start `{}`: {e}", program.display()))?;
     Ok(ExitCode::from(u8::try_from(status.code().unwrap_or(1)).unwrap_or(1)))
@@ -44,7 +44,7 @@ pub fn run(model: &Path, arguments: &[String]) -> Outcome {
 
 /// `ansatz build`: builds the simulator and copies it.
 pub fn build(model: &Path, to: &Path) -> Outcome {
-    let program = build_simulator(model)?;
+    let program = build_simulator(model, Machine::Any)?;
     std::fs::copy(&program, to).map_err(|e| format!("error: cannot write `{}`: {e}", to.display()))?;
     say(&format!(
         "{}: a simulator that needs neither Rust nor the model; try `{} --help`",
@@ -67,12 +67,12 @@ pub fn test(model: &Path, arguments: &[String]) -> Outcome {
     if output.has_run_tests { run(model, &all) } else { Ok(ExitCode::SUCCESS) }
 }
 
-fn build_simulator(model: &Path) -> Result<PathBuf, String> {
+fn build_simulator(model: &Path, machine: Machine) -> Result<PathBuf, String> {
     let compilation = compile_file(model)?;
     let output = output(&compilation)?;
     let file = model_file(model);
     let place = file.canonicalize().unwrap_or(file).display().to_string();
-    project::build(&output.name, &fingerprint(&place), &output.rust)
+    project::build(&output.name, &fingerprint(&place), &output.rust, machine)
 }
 
 /// Prints the diagnostics; the output, or an error if there are any errors.

@@ -13,10 +13,19 @@ fn home() -> PathBuf {
     std::env::var_os("ANSATZ_HOME").map(PathBuf::from).or(built_in).unwrap_or_default()
 }
 
+/// Where a simulator will run.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Machine {
+    /// Here: kernels are compiled for the registers of this machine only, in half the time.
+    This,
+    /// Anywhere: kernels are compiled for all instruction sets and choose at run time.
+    Any,
+}
+
 /// Writes the project of a model and builds it; returns the executable.
 ///
 /// `identity` tells models of the same name apart.
-pub fn build(name: &str, identity: &str, rust: &str) -> Result<PathBuf, String> {
+pub fn build(name: &str, identity: &str, rust: &str, machine: Machine) -> Result<PathBuf, String> {
     let home = home();
     let runtime = home.join("runtime");
     if !runtime.join("Cargo.toml").exists() {
@@ -38,6 +47,7 @@ pub fn build(name: &str, identity: &str, rust: &str) -> Result<PathBuf, String> 
         .arg("--target-dir")
         .arg(&target)
         .args(["--", "-C", "lto=off"]) // kernels call nothing across their parts of the program
+        .args(lanes(machine))
         .current_dir(&home) // the toolchain that the sources name
         .status()
         .map_err(|e| {
@@ -50,6 +60,18 @@ pub fn build(name: &str, identity: &str, rust: &str) -> Result<PathBuf, String> 
         ));
     }
     Ok(target.join("release").join(&package))
+}
+
+/// What the compiler is told of the registers that kernels are for.
+fn lanes(machine: Machine) -> Option<&'static str> {
+    match machine {
+        Machine::Any => None,
+        #[cfg(target_arch = "x86_64")]
+        Machine::This if pulp::x86::V4::try_new().is_some() => Some("--cfg=ansatz_lanes=\"avx512\""),
+        #[cfg(target_arch = "x86_64")]
+        Machine::This if pulp::x86::V3::try_new().is_some() => Some("--cfg=ansatz_lanes=\"avx2\""),
+        Machine::This => None,
+    }
 }
 
 fn write_project(folder: &Path, package: &str, runtime: &Path, rust: &str) -> Result<(), String> {

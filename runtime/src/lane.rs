@@ -69,6 +69,9 @@ pub fn rows_mut<const N: usize>(rows: &mut [Row]) -> &mut [Row; N] {
 /// `kernel_lanes(s, o, batch, out)` for `o = 0, S::F64_LANES, ..`, where
 /// `fn kernel_lanes<S: Simd>(s: S, o: usize, batch: &Batch<'_>, out: &mut [f64])` must be `#[inline(always)]`: only then
 /// is it compiled for the chosen instruction set. Arguments have their types written out.
+///
+/// A program compiled with `--cfg ansatz_lanes="avx512"` or `"avx2"` has its kernels for that set and for any machine, and none between: half the
+/// work for the compiler where it is known where the program will run.
 #[macro_export]
 macro_rules! vectorize {
     ($lanes:ident($($name:ident: $type:ty),* $(,)?)) => {{
@@ -83,8 +86,37 @@ macro_rules! vectorize {
                 }
             }
         }
-        $crate::lane::Arch::new().dispatch(Kernel(($($name,)*)))
+        let kernel = Kernel(($($name,)*));
+        #[allow(unexpected_cfgs)] // set by whoever compiles the program
+        {
+            #[cfg(ansatz_lanes = "avx512")]
+            $crate::lane::with_avx512(kernel);
+            #[cfg(ansatz_lanes = "avx2")]
+            $crate::lane::with_avx2(kernel);
+            #[cfg(not(any(ansatz_lanes = "avx512", ansatz_lanes = "avx2")))]
+            $crate::lane::Arch::new().dispatch(kernel);
+        }
     }};
+}
+
+/// Runs a kernel with AVX-512, or one number at a time where the machine has none.
+#[inline(always)]
+pub fn with_avx512<K: WithSimd<Output = ()>>(kernel: K) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = pulp::x86::V4::try_new() {
+        return Simd::vectorize(simd, kernel);
+    }
+    pulp::Scalar.vectorize(kernel)
+}
+
+/// Runs a kernel with AVX2, or one number at a time where the machine has none.
+#[inline(always)]
+pub fn with_avx2<K: WithSimd<Output = ()>>(kernel: K) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = pulp::x86::V3::try_new() {
+        return Simd::vectorize(simd, kernel);
+    }
+    pulp::Scalar.vectorize(kernel)
 }
 
 /// One register of numbers, one per element; arithmetic acts on each number.
@@ -373,6 +405,24 @@ mod tests {
         let mut out = [[1.0; BATCH]];
         squares(&ROW, &mut out);
         assert_eq!(out[0], ROW.map(|x| 1.0 + x * x));
+    }
+
+    /// Counts the numbers of a batch that one call treats register by register.
+    struct Count<'a>(&'a mut usize);
+
+    impl WithSimd for Count<'_> {
+        type Output = ();
+        fn with_simd<S: Simd>(self, _: S) {
+            *self.0 += BATCH / S::F64_LANES * S::F64_LANES;
+        }
+    }
+
+    #[test]
+    fn kernels_for_one_instruction_set_run_on_every_machine() {
+        let mut visited = [0; 2];
+        with_avx512(Count(&mut visited[0]));
+        with_avx2(Count(&mut visited[1]));
+        assert_eq!(visited, [BATCH; 2]);
     }
 
     fn operators_match<S: Simd>(s: S) {

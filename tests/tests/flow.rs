@@ -111,9 +111,13 @@ fn what_newton_does_not_reach_at_once_is_reached_along_a_ramp() {
     let start = system.start().unwrap();
     let rates = vec![0.0; start.len()];
     let problem = StageProblem { time: 0.0, alpha: 0.0, base: &rates };
+    // Damped steps lead from rest to the flow at Reynolds number 1000; fewer than they need do not.
+    assert!(system.solve_stage(&problem, &mut start.clone()).unwrap().iterations <= 15);
+    system.settings.newton_iterations = 3;
+    let start = system.start().unwrap();
     assert!(
         system.solve_stage(&problem, &mut start.clone()).is_err(),
-        "30 iterations from rest are not enough"
+        "3 iterations from rest are not enough"
     );
     let mut y = start.clone();
     let report = system.solve_stationary(&problem, &mut y).unwrap();

@@ -1,17 +1,15 @@
 //! Newton's method for one implicit stage of the time integrator.
 
+mod search;
+
 use super::System;
 use super::balance::{Balance, norm};
 use super::broyden::Broyden;
 use super::contact::{Curvature, PairOn};
 use crate::error::{Cause, SolveError};
 use crate::solve::linear::{Definiteness, LinearError};
+use search::Damped;
 use std::ops::Range;
-
-/// Most halvings of a step of the line search.
-const HALVINGS: usize = 8;
-/// The line search accepts a step when |du . R| falls below this part of its start.
-const DECREASE: f64 = 0.9;
 
 /// Factors are kept for a further step while each step leaves less than this part of the residual: five such steps take as long as new factors.
 const CONTRACTION: f64 = 0.5;
@@ -74,10 +72,12 @@ struct Progress {
     keep_factors: bool,
     /// Steps taken with these factors.
     steps: Broyden,
-    /// The last new tangent made the residual much smaller.
+    /// The last new tangent made the residual, or the direction, much smaller.
     converging: bool,
     /// Negative pivots of the last exact tangent.
     negative_pivots: usize,
+    /// What the last step tells about the next, where it was damped or might have been.
+    damped: Option<Damped>,
     report: NewtonReport,
 }
 
@@ -120,6 +120,7 @@ impl System {
             steps: Broyden::default(),
             converging: false,
             negative_pivots: usable.map_or(0, |f| f.negative_pivots),
+            damped: None,
             report: NewtonReport::default(),
         }
     }
@@ -150,15 +151,16 @@ impl System {
         progress.report.iterations += 1;
         let before = norm(&progress.current.residual);
         let slope = dot(&direction, &balance.residual);
-        let (length, reached) = self.search(problem, &progress.current, &direction, slope)?;
+        let (length, reached) = self.search(problem, progress, &direction, slope)?;
         progress.current = reached;
         progress.steps.clear();
         if length == 1.0 {
             progress.steps.push(direction);
         }
         let contraction = norm(&progress.current.residual) / before;
-        progress.keep_factors = contraction < CONTRACTION;
-        progress.converging = contraction < CONVERGING;
+        let of_direction = progress.damped.as_ref().map_or(contraction, |damped| damped.contraction);
+        progress.keep_factors = contraction.max(of_direction) < CONTRACTION;
+        progress.converging = contraction.min(of_direction) < CONVERGING;
         if progress.scales.is_empty() || progress.report.iterations > 1 {
             let Iterate { y, rates, .. } = &progress.current;
             progress.scales = self.force_scales(y, rates, problem.alpha);
@@ -173,8 +175,11 @@ impl System {
         problem: &StageProblem<'_>,
         progress: &mut Progress,
     ) -> Result<bool, Cause> {
-        let Progress { current, .. } = progress;
-        let mut direction = self.solve_for(&current.residual)?;
+        let Progress { current, damped, .. } = progress;
+        let mut direction = match damped.take() {
+            Some(damped) => damped.correction,
+            None => self.solve_for(&current.residual)?,
+        };
         progress.steps.correct(&mut direction);
         let trial = self.evaluate(problem, self.along(&current.y, &direction, 1.0));
         progress.keep_factors = false;
@@ -265,39 +270,6 @@ impl System {
             moved[unknown as usize] += length * d;
         }
         moved
-    }
-
-    /// Goes along the direction as far as |du . R| falls from its start, `slope`. A symmetric tangent is that of an energy with the slope du . R: going
-    /// down it, the energy falls as long as that is negative, and only going past its minimum is going too far. The part of the way, and what is there.
-    fn search(
-        &mut self,
-        problem: &StageProblem<'_>,
-        current: &Iterate,
-        direction: &[f64],
-        slope: f64,
-    ) -> Result<(f64, Iterate), Cause> {
-        let downhill = self.is_symmetric() && slope < 0.0;
-        let mut length = 1.0;
-        let mut best: Option<(f64, (f64, Iterate))> = None;
-        let mut cause = Cause::NotFinite;
-        for _ in 0..=HALVINGS {
-            match self.evaluate(problem, self.along(&current.y, direction, length)) {
-                Ok(trial) => {
-                    let work = dot(direction, &trial.residual);
-                    let work = if downhill { work } else { work.abs() };
-                    let smaller = norm(&trial.residual) <= norm(&current.residual) * 1e-3;
-                    if work <= DECREASE * slope.abs() || smaller {
-                        return Ok((length, trial));
-                    }
-                    if best.as_ref().is_none_or(|(least, _)| work < *least) {
-                        best = Some((work, (length, trial)));
-                    }
-                }
-                Err(reason) => cause = reason,
-            }
-            length *= 0.5;
-        }
-        best.map(|(_, reached)| reached).ok_or(cause)
     }
 
     /// The iterate at y with the held values of the stage.

@@ -59,14 +59,20 @@ impl System {
         relative.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)
     }
 
-    /// Whether the residual of every field is as small as wanted, or as its rounding.
-    pub(super) fn is_small(&self, residual: &[f64], scales: &[f64], y: &[f64]) -> bool {
+    /// Whether the residual of every field is as small as wanted, or as its rounding at `y`, which is kept in `rounding` until there is another tangent.
+    pub(super) fn is_small(
+        &self,
+        residual: &[f64],
+        scales: &[f64],
+        y: &[f64],
+        rounding: &mut Option<Vec<f64>>,
+    ) -> bool {
         let wanted = |k: usize| self.settings.newton_tolerance * scales.get(k).copied().unwrap_or(0.0);
         let sizes = self.field_norms(residual);
         if sizes.iter().enumerate().all(|(k, &size)| size <= wanted(k)) {
             return true;
         }
-        let rounding = self.field_norms(&self.rounding(y));
+        let rounding = rounding.get_or_insert_with(|| self.field_norms(&self.rounding(y)));
         sizes.iter().enumerate().all(|(k, &size)| size <= wanted(k).max(rounding[k]))
     }
 

@@ -70,6 +70,8 @@ struct Progress {
     scales: Vec<f64>,
     /// The last step made the residual so much smaller that the same factors will do again.
     keep_factors: bool,
+    /// Residual of each field that rounding alone may leave, with the tangent of these factors; none before it is asked for.
+    rounding: Option<Vec<f64>>,
     /// Steps taken with these factors.
     steps: Broyden,
     /// The last new tangent made the residual, or the direction, much smaller.
@@ -117,6 +119,7 @@ impl System {
             current,
             scales: self.forces.clone(),
             keep_factors: usable.is_some(),
+            rounding: None,
             steps: Broyden::default(),
             converging: false,
             negative_pivots: usable.map_or(0, |f| f.negative_pivots),
@@ -153,6 +156,7 @@ impl System {
         let slope = dot(&direction, &balance.residual);
         let (length, reached) = self.search(problem, progress, &direction, slope)?;
         progress.current = reached;
+        progress.rounding = None;
         progress.steps.clear();
         if length == 1.0 {
             progress.steps.push(direction);
@@ -194,9 +198,9 @@ impl System {
     }
 
     fn converged(&self, progress: &mut Progress) -> bool {
-        let Progress { current, scales, report, .. } = progress;
+        let Progress { current, scales, rounding, report, .. } = progress;
         report.residual = self.relative_size(&current.residual, scales);
-        self.is_small(&current.residual, scales, &current.y)
+        self.is_small(&current.residual, scales, &current.y, rounding)
     }
 
     /// Newton direction at the current iterate.

@@ -107,7 +107,7 @@ impl Factors {
     pub fn factor(&mut self, entries: &[f64]) -> Result<Pivots, Error> {
         self.factorisations += 1;
         let threads = self.threads();
-        let largest = entries.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+        let largest = largest_magnitude(entries);
         let threshold = Threshold { zero: ZERO_PIVOT * largest, substitute: SUBSTITUTE * largest };
         let job = Job { analysis: &self.analysis, places: &self.schedule.places, entries, threshold };
         let mut tasks = tasks(&self.schedule, &self.analysis, &mut self.values, &mut self.exchanges);
@@ -226,10 +226,19 @@ fn merge(a: Result<Pivots, usize>, b: Result<Pivots, usize>) -> Result<Pivots, u
     }
 }
 
+/// The largest magnitude, found in several places at a time.
+fn largest_magnitude(entries: &[f64]) -> f64 {
+    let (chunks, rest) = entries.as_chunks::<8>();
+    let mut largest = [0.0_f64; 8];
+    for chunk in chunks {
+        largest.iter_mut().zip(chunk).for_each(|(largest, entry)| *largest = largest.max(entry.abs()));
+    }
+    largest.iter().chain(rest).fold(0.0, |largest, entry| largest.max(entry.abs()))
+}
+
 /// Zeros, or an error instead of an abort when memory does not suffice.
 fn zeros(length: usize) -> Result<Vec<f64>, Error> {
-    let mut values = Vec::new();
-    values.try_reserve_exact(length).map_err(|_| Error::TooLarge)?;
-    values.resize(length, 0.0);
-    Ok(values)
+    // What was just reserved and given back is there; memory that comes as zeros is not touched before it is used.
+    Vec::<f64>::new().try_reserve_exact(length).map_err(|_| Error::TooLarge)?;
+    Ok(vec![0.0; length])
 }

@@ -34,8 +34,9 @@ impl Pattern<'_> {
     /// Calls `visit(position, row, column)` for every entry, column by column.
     pub fn for_each(&self, mut visit: impl FnMut(usize, usize, usize)) {
         for column in 0..self.size() {
-            for position in self.column(column) {
-                visit(position, self.rows[position] as usize, column);
+            let range = self.column(column);
+            for (position, &row) in range.clone().zip(&self.rows[range]) {
+                visit(position, row as usize, column);
             }
         }
     }
@@ -76,9 +77,31 @@ impl Graph {
     pub fn of(pattern: Pattern<'_>) -> Self {
         let lists = Self { starts: pattern.starts.to_vec(), neighbours: pattern.rows.to_vec() };
         let by_row = lists.transposed();
+        if by_row.neighbours == lists.neighbours && by_row.starts == lists.starts {
+            return by_row.without_loops();
+        }
         // Ascending, as the pattern itself need not be.
         let by_column = by_row.transposed();
         by_row.united(&by_column)
+    }
+
+    /// The edges between different nodes.
+    fn without_loops(mut self) -> Self {
+        let (mut begin, mut kept) = (0, 0);
+        for node in 0..self.size() {
+            let end = self.starts[node + 1] as usize;
+            for k in begin..end {
+                let neighbour = self.neighbours[k];
+                if neighbour as usize != node {
+                    self.neighbours[kept] = neighbour;
+                    kept += 1;
+                }
+            }
+            begin = end;
+            self.starts[node + 1] = kept as u32;
+        }
+        self.neighbours.truncate(kept);
+        self
     }
 
     /// The same edges in the other direction, ascending.
@@ -136,4 +159,22 @@ pub(crate) fn inverse(order: &[u32]) -> Vec<u32> {
         place[old as usize] = new as u32;
     }
     place
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_graph_is_the_same_whichever_triangles_are_stored_and_in_whatever_order() {
+        let graph = |kind, starts: &[u32], rows: &[u32]| {
+            let Graph { starts, neighbours } = Graph::of(Pattern { kind, starts, rows });
+            (starts, neighbours)
+        };
+        let expected = (vec![0, 1, 3, 4, 4], vec![1, 0, 2, 1]);
+        let both = graph(Kind::Unsymmetric, &[0, 2, 5, 7, 8], &[0, 1, 0, 1, 2, 1, 2, 3]);
+        let unordered = graph(Kind::Unsymmetric, &[0, 2, 5, 7, 8], &[1, 0, 2, 0, 1, 2, 1, 3]);
+        let lower = graph(Kind::Symmetric, &[0, 2, 4, 5, 6], &[0, 1, 1, 2, 2, 3]);
+        assert_eq!([both, unordered, lower], [(); 3].map(|()| expected.clone()));
+    }
 }

@@ -103,11 +103,12 @@ impl Scaling {
             return Err(Error::EmptyRow { equation });
         }
         self.rows.iter_mut().for_each(|entry| *entry = entry.recip());
-        self.columns.fill(0.0);
-        pattern.for_each(|position, row, column| {
-            let entry = self.rows[row] * values[position].abs();
-            self.columns[column] = self.columns[column].max(entry);
-        });
+        for (column, largest) in self.columns.iter_mut().enumerate() {
+            let range = pattern.column(column);
+            let entries = pattern.rows[range.clone()].iter().zip(&values[range]);
+            let scaled = entries.map(|(&row, value)| self.rows[row as usize] * value.abs());
+            *largest = scaled.fold(0.0, f64::max);
+        }
         if let Some(equation) = self.columns.iter().position(|&entry| entry == 0.0) {
             return Err(Error::EmptyColumn { equation });
         }

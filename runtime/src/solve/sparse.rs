@@ -39,23 +39,38 @@ impl SparsePattern {
         elements: impl IntoIterator<Item = &'a [u32]>,
     ) -> Self {
         let elements = Incidence::new(size, elements);
-        let mut column_starts = Vec::with_capacity(size + 1);
-        let mut rows = Vec::new();
-        let mut last_column_of_row = vec![u32::MAX; size];
-        column_starts.push(0);
-        for column in 0..size as u32 {
-            let begin = rows.len();
-            rows.push(column);
-            last_column_of_row[column as usize] = column;
-            for &row in elements.around(column).flatten() {
+        let mut starts = Vec::with_capacity(size + 1);
+        let mut columns = Vec::new();
+        let mut last_row_of_column = vec![u32::MAX; size];
+        starts.push(0);
+        for row in 0..size as u32 {
+            columns.push(row);
+            last_row_of_column[row as usize] = row;
+            for &column in elements.around(row).flatten() {
                 let stored = kind == MatrixKind::Unsymmetric || row > column;
-                if stored && last_column_of_row[row as usize] != column {
-                    last_column_of_row[row as usize] = column;
-                    rows.push(row);
+                if stored && last_row_of_column[column as usize] != row {
+                    last_row_of_column[column as usize] = row;
+                    columns.push(column);
                 }
             }
-            rows[begin..].sort_unstable();
-            column_starts.push(rows.len() as u32);
+            starts.push(columns.len() as u32);
+        }
+        Self::from_rows(kind, &starts, &columns)
+    }
+
+    /// The pattern with the columns of each row, in any order: taken row after row, entries come to their columns in ascending order.
+    fn from_rows(kind: MatrixKind, starts: &[u32], columns: &[u32]) -> Self {
+        let size = starts.len() - 1;
+        let mut column_starts = vec![0; size + 1];
+        columns.iter().for_each(|&column| column_starts[column as usize + 1] += 1);
+        (0..size).for_each(|k| column_starts[k + 1] += column_starts[k]);
+        let (mut next, mut rows) = (column_starts.clone(), vec![0; columns.len()]);
+        for (row, range) in starts.windows(2).enumerate() {
+            for &column in &columns[range[0] as usize..range[1] as usize] {
+                let place = &mut next[column as usize];
+                rows[*place as usize] = row as u32;
+                *place += 1;
+            }
         }
         Self { kind, column_starts, rows }
     }
@@ -161,10 +176,13 @@ impl SparsePattern {
     ///
     /// Also returns the position among the stored entries of every entry.
     pub fn expanded(&self) -> (Self, Vec<u32>) {
+        if self.kind == MatrixKind::Unsymmetric {
+            return (self.clone(), (0..self.entries() as u32).collect());
+        }
         let mut entries = Vec::with_capacity(2 * self.entries());
         self.for_each(|position, row, column| {
             entries.push((row as u32, column as u32, position as u32));
-            if self.kind == MatrixKind::Symmetric && row != column {
+            if row != column {
                 entries.push((column as u32, row as u32, position as u32));
             }
         });

@@ -1,4 +1,4 @@
-//! Time that this thread spent computing, so that neighbours on a shared machine count little.
+//! Time that this thread spent computing, so that neighbours on a shared machine count little; for several threads, time on the clock.
 
 use std::time::Instant;
 
@@ -17,6 +17,12 @@ impl Clock {
     /// Starts counting.
     pub fn start() -> Self {
         Self { wall: Instant::now(), account: account() }
+    }
+
+    /// Starts counting what some threads do together: time on the clock if it is more than one.
+    pub fn on(threads: usize) -> Self {
+        let clock = Self::start();
+        if threads > 1 { Self { account: None, ..clock } } else { clock }
     }
 
     /// Seconds of computing since the start; of waiting too where the system keeps no account.
@@ -41,6 +47,21 @@ pub fn median(mut call: impl FnMut()) -> f64 {
     let mut times: Vec<f64> = (0..RUNS).map(|_| mean_of_a_run(&mut call)).collect();
     times.sort_by(f64::total_cmp);
     times[RUNS / 2]
+}
+
+/// Time of one call that uses some threads \[s\]: the median computing time on one, the least on the clock on several, to which waiting for
+/// neighbours on the machine only adds.
+pub fn time_on(threads: usize, mut call: impl FnMut()) -> f64 {
+    if threads == 1 {
+        return median(call);
+    }
+    let (start, mut least) = (Instant::now(), f64::INFINITY);
+    while start.elapsed().as_secs_f64() < RUNS as f64 * LEAST {
+        let wall = Instant::now();
+        call();
+        least = least.min(wall.elapsed().as_secs_f64());
+    }
+    least
 }
 
 /// Mean time of as many calls as the least time takes.

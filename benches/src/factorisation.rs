@@ -1,10 +1,9 @@
 //! Sparse factorisation of assembled matrices: analysis, factorisation and solution with one right-hand side.
 
-use crate::clock::{Clock, median};
+use crate::clock::{Clock, time_on};
 use crate::matrices::{Matrix, Problem, matrix};
 use ansatz_frontal::{Analysis, Kind, Pattern, Solver};
 use serde_json::{Value, json};
-use std::time::Instant;
 
 /// Flow at Reynolds number 100 (`ns`) or elasticity (`elastic`, Cholesky) on a square with about `unknowns` unknowns.
 ///
@@ -24,12 +23,11 @@ pub fn factorisation(kind: &str, unknowns: usize, threads: usize) -> Result<Valu
     Analysis::thorough(pattern, &weak).map_err(|e| e.to_string())?;
     let dissect = clock.seconds();
     let mut pivots = solver.factor(&matrix.values).map_err(|e| e.to_string())?;
-    let time = |call: &mut dyn FnMut()| if threads > 1 { elapsed(call) } else { median(call) };
-    let factor = time(&mut || pivots = solver.factor(&matrix.values).unwrap_or(pivots));
+    let factor = time_on(threads, || pivots = solver.factor(&matrix.values).unwrap_or(pivots));
     let rhs: Vec<f64> = (0..matrix.size()).map(|k| (k as f64).sin()).collect();
     let mut x = rhs.clone();
     let report = solver.solve(&mut x);
-    let solve = median(&mut || {
+    let solve = time_on(threads, || {
         x.copy_from_slice(&rhs);
         solver.solve(&mut x);
     });
@@ -42,17 +40,6 @@ pub fn factorisation(kind: &str, unknowns: usize, threads: usize) -> Result<Valu
         "perturbed": pivots.perturbed, "residual": report.relative_residual,
         "backward_error": report.backward_error, "refinements": report.refinements,
     }))
-}
-
-/// Median time of one call on the clock \[s\].
-fn elapsed(call: &mut dyn FnMut()) -> f64 {
-    let mut times = [0.0; 7].map(|_: f64| {
-        let start = Instant::now();
-        call();
-        start.elapsed().as_secs_f64()
-    });
-    times.sort_by(f64::total_cmp);
-    times[3]
 }
 
 /// The matrix of a problem, or its lower triangle where Cholesky applies.

@@ -1,11 +1,12 @@
 //! P2 and P4: whole nonlinear solves in four load steps, on the peers' meshes.
 
-use crate::clock::median;
+use crate::clock::time_on;
 use ansatz::generated::Program;
 use ansatz::mesh::{Mesh, structured_rectangle};
 use ansatz::observer::{Observer, Step};
 use ansatz::system::{StageProblem, System};
 use ansatz::{Error, Simulation};
+use std::num::NonZeroUsize;
 
 /// A solve that ran.
 pub struct Solved {
@@ -51,6 +52,14 @@ impl Solve {
         Ok(Self { program, values: values.to_vec(), simulation })
     }
 
+    /// Solves on some threads from now on, one at first.
+    ///
+    /// # Errors
+    /// Want of memory.
+    pub fn use_threads(&mut self, threads: NonZeroUsize) -> Result<(), Error> {
+        self.simulation.use_threads(threads)
+    }
+
     /// Unknowns, held ones included.
     pub fn unknowns(&self) -> usize {
         self.simulation.system().unknowns.length
@@ -79,10 +88,12 @@ impl Solve {
     pub fn assembly(&self) -> Result<f64, Error> {
         let mesh = self.simulation.system().mesh.clone();
         let mut system = System::new(self.program, &self.values, mesh)?;
+        let threads = self.simulation.system().threads();
+        system.use_threads(threads)?;
         let y = vec![0.0; system.unknowns.length];
         let problem = StageProblem { time: 0.0, alpha: 0.0, base: &y };
         let mut probe = system.probe(&problem, &y).map_err(|cause| Error::Model(cause.to_string()))?;
-        Ok(median(|| probe.assemble()))
+        Ok(time_on(threads.get(), || probe.assemble()))
     }
 }
 

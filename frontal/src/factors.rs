@@ -78,6 +78,18 @@ impl Factors {
         })
     }
 
+    /// The same for factorisations on some number of threads; if it changes, the matrix is to be factored anew.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn on_threads(self, threads: usize) -> Result<Self, Error> {
+        if threads == self.threads() {
+            return Ok(self);
+        }
+        let factorisations = self.factorisations;
+        Ok(Self { factorisations, ..Self::with_threads(self.analysis, threads)? })
+    }
+
     /// Structure of the factors.
     pub fn analysis(&self) -> &Analysis {
         &self.analysis

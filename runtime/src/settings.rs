@@ -3,6 +3,10 @@
 use crate::error::Error;
 use crate::generated::{Parameter, Program};
 use ansatz_units::{Dimension, Rational, nearest, parse_quantity};
+use std::num::NonZeroUsize;
+
+/// Threads that can be asked for; more would only wait for each other.
+pub const MOST_THREADS: usize = 256;
 
 /// Values of all parameters in the model's units: those set, and defaults for the rest (defaults may depend on parameters before them).
 ///
@@ -88,6 +92,18 @@ pub fn time(program: &Program, text: &str) -> Result<f64, Error> {
     } else {
         Err(wrong(format!("it is {}", dimension.describe())))
     }
+}
+
+/// A number of threads such as `2`.
+///
+/// # Errors
+/// [`Error::Parameter`] when it is no whole number from 1 to [`MOST_THREADS`].
+pub fn threads(text: &str) -> Result<NonZeroUsize, Error> {
+    let number = text.parse().ok().filter(|threads: &NonZeroUsize| threads.get() <= MOST_THREADS);
+    let wrong = || {
+        format!("`{text}` is no number of threads: write one from 1 to {MOST_THREADS}, such as --threads 2")
+    };
+    number.ok_or_else(|| Error::Parameter(wrong()))
 }
 
 /// Refuses an end of a run outside the time `(start, end)` of a model \[internal time\].

@@ -11,6 +11,7 @@ use crate::time::integrator::Point;
 use crate::time::run::{Plan, run};
 use crate::time::{Group, ImplicitSystem, Stage};
 use ansatz_geometry::Geometry;
+use std::num::NonZeroUsize;
 use std::rc::Rc;
 
 #[cfg(test)]
@@ -65,6 +66,15 @@ impl Simulation {
         let frames = samplers(&system)?;
         let discretised = Discretised { system, frames };
         Ok(Self { discretised, record: RunRecord::new(program.events) })
+    }
+
+    /// Assembles and factors on some threads from now on; one at first. Sums of integrals have the same bits on any number of threads, factors
+    /// differ by no more than the order of sums inside large products.
+    ///
+    /// # Errors
+    /// [`Error::Model`] for want of memory.
+    pub fn use_threads(&mut self, threads: NonZeroUsize) -> Result<(), Error> {
+        self.discretised.system.use_threads(threads)
     }
 
     /// Start and end of a run that ends at `until` at the latest [internal time]; (0, 0) for a stationary model.

@@ -6,7 +6,7 @@ use crate::observer::Both;
 use crate::output::progress::{Progress, with_unit};
 use crate::output::results::Results;
 use crate::output::summary::Run;
-use crate::settings::{check_end, display, resolve, split, time};
+use crate::settings::{check_end, display, resolve, split, threads, time};
 use crate::simulation::Simulation;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use std::fmt::Write as _;
@@ -49,6 +49,14 @@ fn command(program: &'static Program) -> Command {
                 .long("until")
                 .value_name("TIME")
                 .help("Ends the run at this time, such as \"50 s\""),
+        )
+        .arg(
+            Arg::new("threads")
+                .long("threads")
+                .value_name("N")
+                .allow_hyphen_values(true)
+                .default_value("1")
+                .help("Computes on this many threads"),
         )
         .arg(
             Arg::new("no-frames")
@@ -100,9 +108,13 @@ fn run(program: &'static Program, matches: &ArgMatches) -> Result<(), Error> {
     let settings = settings.map(|s| split(s)).collect::<Result<Vec<_>, _>>()?;
     let values = resolve(program, &settings)?;
     let until = matches.get_one::<String>("until").map(|t| time(program, t)).transpose()?;
+    let threads = matches.get_one::<String>("threads").map(|text| threads(text)).transpose()?;
     let folder = matches.get_one::<String>("out").map_or_else(|| default_folder(program), PathBuf::from);
     let started = Instant::now();
     let mut simulation = Simulation::new(program, &values)?;
+    if let Some(threads) = threads {
+        simulation.use_threads(threads)?;
+    }
     if let Some(until) = until {
         check_end(program, simulation.span(None), until)?;
     }
@@ -138,6 +150,7 @@ fn describe(program: &Program, simulation: &Simulation, error: Option<&Error>) -
         equations: system.equation_count(),
         matrix_entries: system.matrix_entries(),
         meshings: system.meshings,
+        threads: system.threads().get(),
         events,
         wall_seconds: 0.0,
         error: error.map(ToString::to_string),

@@ -49,6 +49,10 @@ fn wrong_parameters_are_refused_by_name() {
     refused(CRUSHED, &["--set", "fine=3"], &["`fine` = 3 is not one of 1, 2, 4"], 2);
     refused(CRUSHED, &["--set", "w"], &["write NAME=VALUE"], 2);
     refused(CRUSHED, &["--until", "3"], &["`3` is no time", "write it with a unit"], 2);
+    for threads in ["0", "-1", "two", "1.5", "1000", ""] {
+        let words = [&*format!("`{threads}` is no number of threads"), "from 1 to 256", "--threads 2"];
+        refused(CRUSHED, &["--threads", threads], &words, 2);
+    }
     refused(CRUSHED, &["--until", "3600 s"], &["cannot end at 3600 s", "its time is 0 s .. "], 2);
 }
 
@@ -79,6 +83,10 @@ fn times(out: &Path) -> Vec<f64> {
     table.lines().skip(1).map(number).collect()
 }
 
+fn run_json(out: &Path) -> String {
+    fs::read_to_string(out.join("run.json")).expect("the summary is there")
+}
+
 #[test]
 fn a_run_that_fails_keeps_what_it_has_and_says_why() {
     let out = folder("crushed");
@@ -89,7 +97,7 @@ fn a_run_that_fails_keeps_what_it_has_and_says_why() {
     }
     let times = times(&out);
     assert!(times.len() > 10 && times.iter().all(|t| (0.0..2.0).contains(t)), "{times:?}");
-    let summary = fs::read_to_string(out.join("run.json")).unwrap();
+    let summary = run_json(&out);
     assert!(summary.contains("\"outcome\": \"diverged\"") && summary.contains("u.y at ("), "{summary}");
     let list = fs::read_to_string(out.join("fields.pvd")).unwrap();
     for frame in ["fields_00000.vtu", "fields_00003.vtu"] {
@@ -106,6 +114,15 @@ fn a_run_can_end_early_and_write_tables_only() {
     assert_eq!(answer.code, Some(0), "{}", answer.errors);
     assert_eq!(times(&out).last(), Some(&0.3));
     assert!(!out.join("fields.pvd").exists());
+    assert!(run_json(&out).contains("\"threads\": 1"));
+}
+
+#[test]
+fn the_number_of_threads_is_noted() {
+    let out = folder("threads");
+    let answer = call(CRUSHED, &["--threads", "2", "--until", "100 ms", "--no-frames", "--quiet"], &out);
+    assert_eq!(answer.code, Some(0), "{}", answer.errors);
+    assert!(run_json(&out).contains("\"threads\": 2"));
 }
 
 #[test]
@@ -116,4 +133,5 @@ fn help_lists_the_parameters() {
     for word in ["4 mm", "1 .. 10 mm", "width"] {
         assert!(line.contains(word), "{line}");
     }
+    assert!(answer.output.contains("--threads <N>"), "{}", answer.output);
 }

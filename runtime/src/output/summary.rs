@@ -25,6 +25,8 @@ pub struct Run {
     pub matrix_entries: usize,
     /// How often moving regions were meshed.
     pub meshings: usize,
+    /// Threads that assembled and factored it.
+    pub threads: usize,
     /// Events (name, time) in the order in which they fired.
     pub events: Vec<(String, f64)>,
     /// Wall-clock time \[s\].
@@ -90,6 +92,7 @@ struct Solver {
     steps: usize,
     rejected_steps: usize,
     newton_iterations: usize,
+    threads: usize,
     wall_seconds: f64,
 }
 
@@ -140,6 +143,7 @@ pub fn write(
             steps: run.steps[0],
             rejected_steps: run.steps[1],
             newton_iterations: run.iterations,
+            threads: run.threads,
             wall_seconds: run.wall_seconds,
         },
         versions: Versions { ansatz: env!("CARGO_PKG_VERSION"), model_sha256: program.source_hash },

@@ -87,6 +87,14 @@ impl BorderedSolver {
         })
     }
 
+    /// As [`LinearSolver::use_threads`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn use_threads(&mut self, threads: usize) -> Result<(), LinearError> {
+        self.sparse.use_threads(threads)
+    }
+
     /// Number of sparse equations.
     pub fn size(&self) -> usize {
         self.sparse.size()

@@ -82,8 +82,9 @@ pub struct LinearSolver {
 }
 
 /// Storage for the factors of every method, allocated when first needed.
-#[derive(Default)]
 struct AllFactors {
+    /// Threads of Cholesky and LU.
+    threads: usize,
     definite: Option<Factors>,
     indefinite: Option<IndefiniteFactor>,
     unsymmetric: Option<UnsymmetricFactor>,
@@ -95,7 +96,7 @@ impl LinearSolver {
     /// # Errors
     /// [`LinearError::NoEquations`], [`LinearError::TooLarge`].
     pub fn new(pattern: &SparsePattern) -> Result<Self, LinearError> {
-        let mut factors = AllFactors::default();
+        let mut factors = AllFactors { threads: 1, definite: None, indefinite: None, unsymmetric: None };
         match pattern.kind() {
             MatrixKind::Symmetric => {
                 factors.definite = Some(Factors::new(Analysis::new(pattern.view(), &[])?)?);
@@ -104,6 +105,16 @@ impl LinearSolver {
         }
         let [rhs, solution, residual] = [(); 3].map(|()| vec![0.0; pattern.size()]);
         Ok(Self { matrix: ScaledMatrix::new(pattern), factors, factored: None, rhs, solution, residual })
+    }
+
+    /// Uses some threads from now on for Cholesky and LU; Bunch-Kaufman and LU with pivots from whole columns take one. The
+    /// next matrix is to be factored anew.
+    ///
+    /// # Errors
+    /// [`LinearError::TooLarge`].
+    pub fn use_threads(&mut self, threads: usize) -> Result<(), LinearError> {
+        self.factored = None;
+        self.factors.use_threads(threads)
     }
 
     /// Number of equations.
@@ -207,6 +218,12 @@ impl LinearSolver {
 }
 
 impl AllFactors {
+    fn use_threads(&mut self, threads: usize) -> Result<(), LinearError> {
+        self.threads = threads;
+        self.definite = self.definite.take().map(|factor| factor.on_threads(threads)).transpose()?;
+        self.unsymmetric.as_mut().map_or(Ok(()), |factor| factor.use_threads(threads))
+    }
+
     /// Cholesky if it may and does succeed, else Bunch-Kaufman, else LU.
     fn factor(&mut self, matrix: &ScaledMatrix, expected: Definiteness) -> Result<FactorReport, LinearError> {
         if matrix.pattern().kind() == MatrixKind::Symmetric {
@@ -258,7 +275,11 @@ impl AllFactors {
     fn lu(&mut self, matrix: &ScaledMatrix) -> Result<FactorReport, LinearError> {
         let factor = match &mut self.unsymmetric {
             Some(factor) => factor,
-            None => self.unsymmetric.insert(UnsymmetricFactor::new(matrix.pattern())?),
+            None => {
+                let factor = self.unsymmetric.insert(UnsymmetricFactor::new(matrix.pattern())?);
+                factor.use_threads(self.threads)?;
+                factor
+            }
         };
         factor.factor(matrix)?;
         let method = if factor.is_pivoted() { Method::PivotingLu } else { Method::Lu };

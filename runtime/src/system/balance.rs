@@ -142,9 +142,7 @@ impl System {
         let wanted = |b: usize| block.is_none_or(|only| only == b);
         let coefficients = self.coefficients();
         let at = At { y: at_y, rates, g: &self.g, alpha };
-        for term in self.terms.iter_mut().filter(|t| wanted(t.integral.block)) {
-            term.add_residual(at, 1.0, &mut residual);
-        }
+        self.assembly.add_residual(at, wanted, &mut residual);
         for pair in self.pairs.iter_mut().filter(|pair| pair.acts()) {
             pair.update(&self.mesh, &self.unknowns, at_y);
             pair.add_residual(&self.unknowns, &self.g, &wanted, &mut residual);
@@ -174,12 +172,9 @@ impl System {
         curvature: Curvature,
     ) -> Balance {
         let mut residual = vec![0.0; self.unknowns.length];
-        self.values.fill(0.0);
         let coefficients = self.coefficients();
         let at = At { y, rates, g: &self.g, alpha };
-        for term in &mut self.terms {
-            term.add_tangent(at, 1.0, &mut residual, &mut self.values);
-        }
+        self.assembly.linearise(at, &mut residual, &mut self.values);
         for pair in self.pairs.iter_mut().filter(|pair| pair.acts()) {
             pair.update(&self.mesh, &self.unknowns, y);
             let matrix = (&self.pattern, &self.equations[..]);
@@ -214,7 +209,7 @@ impl System {
         let mixing = self.mixing(alpha, &of_states);
         let of_pairs = self.pairs.iter().any(PairOn::reads_globals);
         let read_by_integrals =
-            of_pairs || self.terms.iter().any(|term| term.integral.global_tangent.is_some());
+            of_pairs || self.assembly.terms.iter().any(|term| term.integral.global_tangent.is_some());
         let plain = !read_by_integrals && self.ties.is_empty();
         let squares = if plain { squares(count, &mixing) } else { None };
         if let Some(squares) = squares {
@@ -272,7 +267,7 @@ impl System {
         let of_pairs =
             self.pairs.iter().flat_map(|pair| pair.global_tangents(&self.unknowns, &self.g, alpha));
         let mut all: Vec<GlobalColumns> = of_pairs.collect();
-        for term in &mut self.terms {
+        for term in &mut self.assembly.terms {
             let Some(tangent) = &term.integral.global_tangent else { continue };
             let mut by_slot = vec![vec![0.0; y.len()]; tangent.slots.len()];
             term.add_global_tangent(at, tangent, &mut by_slot);

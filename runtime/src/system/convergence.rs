@@ -31,7 +31,7 @@ impl System {
     pub(super) fn magnitude(&mut self, y: &[f64], rates: &[f64], alpha: f64) -> Vec<f64> {
         let mut magnitude = vec![0.0; self.unknowns.length];
         let at = At { y, rates, g: &self.g, alpha };
-        self.terms.iter_mut().for_each(|t| t.add_magnitude(at, &mut magnitude));
+        self.assembly.add_magnitude(at, &mut magnitude);
         self.hand_on(&mut magnitude);
         magnitude
     }

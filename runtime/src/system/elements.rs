@@ -9,6 +9,7 @@ use ansatz_elements::Element;
 /// Greatest distance of a middle node from the middle of a straight edge, in roundings of its coordinates.
 const ROUNDINGS: f64 = 4.0;
 
+#[derive(Clone)]
 struct Header {
     region: usize,
     straight: bool,
@@ -90,6 +91,20 @@ impl Elements {
         Ok(())
     }
 
+    /// The batches that have some unknown of those asked for.
+    pub fn part(&self, wanted: impl Fn(u32) -> bool) -> Self {
+        let is_wanted = |batch: &usize| self.unknowns(*batch).as_flattened().iter().any(|&u| wanted(u));
+        let batches: Vec<usize> = (0..self.batches()).filter(is_wanted).collect();
+        Self {
+            headers: batches.iter().map(|&batch| self.headers[batch].clone()).collect(),
+            coordinate_rows: self.coordinate_rows,
+            coordinates: batches.iter().flat_map(|&batch| self.nodes(batch)).copied().collect(),
+            local: self.local,
+            unknowns: batches.iter().flat_map(|&batch| self.unknowns(batch)).copied().collect(),
+            reads_rates: self.reads_rates,
+        }
+    }
+
     /// Local unknowns per element.
     pub fn local(&self) -> usize {
         self.local
@@ -108,6 +123,11 @@ impl Elements {
     /// Unknown of each local unknown and lane.
     pub fn unknowns(&self, batch: usize) -> &[[u32; BATCH]] {
         &self.unknowns[batch * self.local..(batch + 1) * self.local]
+    }
+
+    /// Reference coordinates of the geometry nodes.
+    fn nodes(&self, batch: usize) -> &[Row] {
+        &self.coordinates[batch * self.coordinate_rows..(batch + 1) * self.coordinate_rows]
     }
 
     /// Unknown lists of all elements, one after another.
@@ -134,11 +154,10 @@ impl Elements {
     ) -> Batch<'a> {
         collect(y, self.unknowns(batch), &mut buffer.values);
         collect(rates, self.unknowns(batch), &mut buffer.rates);
-        let rows = self.coordinate_rows;
         let header = &self.headers[batch];
         Batch {
             region: header.region,
-            nodes: &self.coordinates[batch * rows..(batch + 1) * rows],
+            nodes: self.nodes(batch),
             straight: header.straight,
             values: &buffer.values,
             rates: &buffer.rates,

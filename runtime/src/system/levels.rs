@@ -210,7 +210,7 @@ impl System {
     fn statements_at(&mut self, unknown: usize, y: &[f64], rates: &[f64], alpha: f64) -> String {
         let at = At { y, rates, g: &self.g, alpha };
         let mut places = Vec::new();
-        for term in &mut self.terms {
+        for term in &mut self.assembly.terms {
             let mut magnitude = vec![0.0; y.len()];
             term.add_magnitude(at, &mut magnitude);
             if magnitude[unknown] > 0.0 {

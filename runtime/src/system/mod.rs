@@ -5,6 +5,7 @@
 //! for each functional:
 //! K + sum_j b_j (grad Z_j)^T, with b_j = sum_k (d c_k / d Z_j) grad Z_k + d R / d (states) . d (states) / d Z_j.
 
+mod assembly;
 mod balance;
 mod broyden;
 mod contact;
@@ -21,6 +22,7 @@ mod point;
 mod probe;
 mod ramp;
 mod scalars;
+mod shares;
 mod sides;
 mod start;
 mod states;
@@ -45,6 +47,7 @@ use crate::mesh::{Follower, Mesh};
 use crate::solve::border::BorderedSolver;
 use crate::solve::sparse::{MatrixKind, SparsePattern};
 use crate::time::control::with_step_bounds;
+use assembly::Assembly;
 use contact::PairOn;
 use functionals::FunctionalOn;
 use levels::Level;
@@ -52,7 +55,8 @@ use observables::ObservableOn;
 use ramp::Ramp;
 use start::HeldUnknown;
 use states::StateSolver;
-use terms::Term;
+use std::num::NonZeroUsize;
+use terms::{Layout, Term};
 use ties::Tied;
 use unknowns::NONE;
 
@@ -79,7 +83,7 @@ pub struct System {
     equations: Vec<u32>,
     /// Unknown of each equation.
     free: Vec<u32>,
-    terms: Vec<Term>,
+    assembly: Assembly,
     functionals: Vec<FunctionalOn>,
     pairs: Vec<PairOn>,
     observables: Vec<ObservableOn>,
@@ -87,6 +91,8 @@ pub struct System {
     kind: MatrixKind,
     pattern: SparsePattern,
     solver: BorderedSolver,
+    /// Threads that assemble and factor.
+    threads: NonZeroUsize,
     /// Matrix values and one spare entry for what belongs to held unknowns; behind them, where there are ties to rates, the same again for the
     /// columns that d rate / d value multiplies.
     values: Vec<f64>,
@@ -155,7 +161,7 @@ impl System {
             && ties.is_empty();
         let kind = if symmetric { MatrixKind::Symmetric } else { MatrixKind::Unsymmetric };
         let pattern = SparsePattern::from_elements(free.len(), kind, []);
-        let solver = analyse(&pattern)?;
+        let solver = analyse(&pattern, NonZeroUsize::MIN)?;
         let states = program.state_system.as_ref().map(|system| {
             let bounds = program.states.iter().map(|s| (s.bounds)(&g)).collect();
             StateSolver::new(system, program.layout, bounds)
@@ -177,7 +183,7 @@ impl System {
             ties,
             equations,
             free,
-            terms,
+            assembly: Assembly::new(terms),
             functionals,
             pairs,
             observables,
@@ -185,6 +191,7 @@ impl System {
             kind,
             pattern,
             solver,
+            threads: NonZeroUsize::MIN,
             values: Vec::new(),
             diagonal: Vec::new(),
             factored: None,
@@ -196,6 +203,28 @@ impl System {
             levels: None,
             ramp: None,
         })
+    }
+
+    /// Assembles and factors on some threads from now on, one at first; see [`Simulation::use_threads`](crate::Simulation::use_threads).
+    ///
+    /// # Errors
+    /// Want of memory for the factors.
+    pub fn use_threads(&mut self, threads: NonZeroUsize) -> Result<(), Error> {
+        self.threads = threads;
+        self.solver.use_threads(threads.get()).map_err(|e| Error::Model(e.to_string()))?;
+        self.factored = None;
+        self.share_out();
+        self.locate();
+        Ok(())
+    }
+
+    /// Threads that assemble and factor.
+    pub fn threads(&self) -> NonZeroUsize {
+        self.threads
+    }
+
+    fn share_out(&mut self) {
+        self.assembly.share(self.threads.get(), &self.mesh, &self.unknowns, &self.ties);
     }
 
     /// Number of equations that the sparse solver sees.
@@ -216,7 +245,7 @@ impl System {
     /// Collects who couples to whom at `y` and analyses the matrix anew.
     fn rebuild_pattern(&mut self, y: &[f64]) -> Result<(), Error> {
         let mut groups: Vec<Vec<u32>> = Vec::new();
-        for term in in_the_matrix(&self.terms, &self.functionals) {
+        for term in in_the_matrix(&self.assembly.terms, &self.functionals) {
             groups.extend(term.elements.element_unknowns());
         }
         for pair in self.pairs.iter_mut().filter(|pair| pair.acts()) {
@@ -229,17 +258,24 @@ impl System {
         }
         self.pattern =
             SparsePattern::from_elements(self.free.len(), self.kind, groups.iter().map(Vec::as_slice));
-        self.solver = analyse(&self.pattern)?;
+        self.solver = analyse(&self.pattern, self.threads)?;
         let of_rates = self.ties.iter().any(|tied| tied.rate);
         self.values = vec![0.0; (self.pattern.entries() + 1) * if of_rates { 2 } else { 1 }];
         self.factored = None;
         let diagonal = (0..self.free.len() as u32).filter_map(|i| self.pattern.position(i, i));
         self.diagonal = diagonal.collect();
+        self.locate();
+        Ok(())
+    }
+
+    /// Looks up where in the matrix tangents go.
+    fn locate(&mut self) {
         let mut follows = vec![false; self.unknowns.length];
         self.ties.iter().filter(|tied| tied.rate).for_each(|tied| follows[tied.unknown] = true);
-        in_the_matrix_mut(&mut self.terms, &mut self.functionals)
-            .for_each(|term| term.locate(&self.pattern, &self.equations, &follows));
-        Ok(())
+        let (pattern, equations, length) = (&self.pattern, &self.equations[..], self.values.len());
+        let layout = Layout { pattern, equations, follows: &follows, length };
+        self.assembly.locate(layout);
+        self.functionals.iter_mut().flat_map(FunctionalOn::terms_mut).for_each(|term| term.locate(layout));
     }
 }
 
@@ -249,19 +285,12 @@ fn in_the_matrix<'a>(terms: &'a [Term], functionals: &'a [FunctionalOn]) -> impl
     terms.iter().chain(of_functionals).filter(|term| term.integral.tangent.is_some())
 }
 
-/// The same, to be changed.
-fn in_the_matrix_mut<'a>(
-    terms: &'a mut [Term],
-    functionals: &'a mut [FunctionalOn],
-) -> impl Iterator<Item = &'a mut Term> {
-    let of_functionals = functionals.iter_mut().flat_map(FunctionalOn::terms_mut);
-    terms.iter_mut().chain(of_functionals).filter(|term| term.integral.tangent.is_some())
-}
-
 /// A solver for the pattern. Without any equation it is one for a single equation, which is never asked.
-fn analyse(pattern: &SparsePattern) -> Result<BorderedSolver, Error> {
+fn analyse(pattern: &SparsePattern, threads: NonZeroUsize) -> Result<BorderedSolver, Error> {
     let single = (pattern.size() == 0).then(|| SparsePattern::from_elements(1, MatrixKind::Symmetric, []));
-    BorderedSolver::new(single.as_ref().unwrap_or(pattern)).map_err(|e| Error::Model(e.to_string()))
+    let solver = BorderedSolver::new(single.as_ref().unwrap_or(pattern));
+    let shared = solver.and_then(|mut solver| solver.use_threads(threads.get()).map(|()| solver));
+    shared.map_err(|e| Error::Model(e.to_string()))
 }
 
 /// Typical edge length: that of equal cells in the box around a mesh, or of equal edges along its paths where it has no cells.

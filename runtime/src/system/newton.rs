@@ -226,7 +226,7 @@ impl System {
     /// Factors a tangent without unstable modes where the exact one has some: that of a smaller time step, in which rates resist more, or else that
     /// without the curvature of the contact. The search starts near what helped last. None, and the exact tangent's factors, where nothing does.
     fn stabilise(&mut self, problem: &StageProblem<'_>, current: &Iterate) -> Result<Option<Balance>, Cause> {
-        let resists = problem.alpha > 0.0 && self.terms.iter().any(|term| term.integral.rates);
+        let resists = problem.alpha > 0.0 && self.assembly.terms.iter().any(|term| term.integral.rates);
         let (factor, times) = if resists { DAMPING } else { (1.0, 0) };
         let stiffer = (1..=times).map(|k| (problem.alpha * factor.powi(k as i32), Curvature::Kept));
         let flat = self.pairs.iter().any(PairOn::acts).then_some((problem.alpha, Curvature::Dropped));

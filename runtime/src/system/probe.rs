@@ -34,7 +34,7 @@ impl Probe<'_> {
     /// Sum of all integrals that have a value; energies of contact pairs do not count.
     pub fn energy(&mut self) -> f64 {
         let at = At { y: &self.y, rates: &self.rates, g: &self.system.g, alpha: self.alpha };
-        self.system.terms.iter_mut().map(|term| term.value(at)).sum()
+        self.system.assembly.terms.iter_mut().map(|term| term.value(at)).sum()
     }
 
     /// Residual of all field unknowns; where a value is held it is minus the reaction.

@@ -20,6 +20,19 @@ pub struct At<'a> {
     pub alpha: f64,
 }
 
+/// Where tangents go.
+#[derive(Clone, Copy)]
+pub struct Layout<'a> {
+    /// Entries of the matrix.
+    pub pattern: &'a SparsePattern,
+    /// Equation of each field unknown, or [`NONE`].
+    pub equations: &'a [u32],
+    /// Unknowns that equal rates: their columns go to a second matrix.
+    pub follows: &'a [bool],
+    /// Number of matrix values: those of the pattern and a spare one, or twice as many.
+    pub length: usize,
+}
+
 /// An integral on the elements of its domain.
 pub struct Term {
     /// The emitted integral.
@@ -37,16 +50,27 @@ pub struct Term {
 impl Term {
     /// Collects the elements of an integral.
     pub fn new(integral: &'static Integral, mesh: &Mesh, unknowns: &Unknowns) -> Result<Self, Error> {
-        let elements = Elements::new(mesh, unknowns, integral)?;
+        Ok(Self::on(Elements::new(mesh, unknowns, integral)?, integral))
+    }
+
+    /// The integral on the batches that have some unknown of those asked for.
+    pub fn part(&self, wanted: impl Fn(u32) -> bool) -> Self {
+        Self::on(self.elements.part(wanted), self.integral)
+    }
+
+    fn on(elements: Elements, integral: &'static Integral) -> Self {
         let rows = elements.local() + tangent_rows(integral.symmetric, elements.local());
         let out = vec![Row::ZERO; rows.max(1)];
         let gathered = elements.buffers();
-        Ok(Self { integral, elements, positions: Vec::new(), mirrored: Vec::new(), gathered, out })
+        Self { integral, elements, positions: Vec::new(), mirrored: Vec::new(), gathered, out }
     }
 
-    /// Looks up where the tangent goes; entries of held unknowns go to the spare last value, columns of unknowns that equal rates (`follows`) to a
-    /// second matrix behind it.
-    pub fn locate(&mut self, pattern: &SparsePattern, equations: &[u32], follows: &[bool]) {
+    /// Looks up where the tangent goes, if there is one; entries of held unknowns go to the spare last value, columns of unknowns that equal rates
+    /// to a second matrix behind it.
+    pub fn locate(&mut self, Layout { pattern, equations, follows, .. }: Layout<'_>) {
+        if self.integral.tangent.is_none() {
+            return;
+        }
         let (n, spare) = (self.elements.local(), pattern.entries() as u32);
         let symmetric = self.integral.symmetric;
         let mirror = symmetric && pattern.kind() == MatrixKind::Unsymmetric;
@@ -82,6 +106,12 @@ impl Term {
     pub fn take_places(&mut self, from: &mut Self) {
         self.positions = std::mem::take(&mut from.positions);
         self.mirrored = std::mem::take(&mut from.mirrored);
+    }
+
+    /// Changes where entries of the tangent go.
+    pub fn redirect(&mut self, new: impl Fn(u32) -> u32) {
+        let places = self.positions.iter_mut().chain(&mut self.mirrored).flatten();
+        places.for_each(|place| *place = new(*place));
     }
 
     /// Value of the integral; 0 if the integrand has none.

@@ -3,8 +3,9 @@
 //! Unknowns of bodies, states and functionals stay what they are; those of moving regions take the values that the old mesh has at the places of
 //! the new nodes, or at the nearest old node where the region has just come.
 
+use super::System;
+use super::functionals::FunctionalOn;
 use super::unknowns::{FieldNumbers, Unknowns};
-use super::{System, in_the_matrix_mut};
 use crate::error::Error;
 use crate::generated::Domain;
 use crate::mesh::{Follower, Locator, Mesh, MeshError};
@@ -70,6 +71,8 @@ impl System {
         let parameters = self.g[parameters[0]..parameters[1]].to_vec();
         let mut old =
             std::mem::replace(self, Self::without_pattern(self.program, &parameters, mesh, followers)?);
+        self.threads = old.threads;
+        self.share_out();
         let transfer = self.transfer(&old.mesh, &old.unknowns);
         let y = transfer.apply(y);
         if same_cells {
@@ -110,8 +113,8 @@ impl System {
         std::mem::swap(&mut self.values, &mut old.values);
         std::mem::swap(&mut self.diagonal, &mut old.diagonal);
         self.factored = old.factored;
-        let new = in_the_matrix_mut(&mut self.terms, &mut self.functionals);
-        let old = in_the_matrix_mut(&mut old.terms, &mut old.functionals);
+        self.assembly.take_places(&mut old.assembly);
+        let [new, old] = [self, old].map(|s| s.functionals.iter_mut().flat_map(FunctionalOn::terms_mut));
         new.zip(old).for_each(|(new, old)| new.take_places(old));
     }
 

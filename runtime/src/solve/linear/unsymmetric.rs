@@ -29,6 +29,8 @@ pub struct UnsymmetricFactor {
     norm: f64,
     /// Whether the diagonal entry of an unknown was ever zero: it is eliminated late.
     weak: Vec<bool>,
+    /// Threads that eliminate fronts.
+    threads: usize,
     fronts: Option<Factors>,
     pivoting: Option<PivotingFactor>,
     /// Which factors hold the matrix.
@@ -52,11 +54,22 @@ impl UnsymmetricFactor {
             pattern,
             sources,
             norm: 0.0,
+            threads: 1,
             fronts: None,
             pivoting: None,
             pivoted: false,
             perturbed: false,
         })
+    }
+
+    /// Factors on some threads from now on; LU with unrestricted pivoting takes one.
+    ///
+    /// # Errors
+    /// [`LinearError::TooLarge`].
+    pub fn use_threads(&mut self, threads: usize) -> Result<(), LinearError> {
+        self.threads = threads;
+        self.fronts = self.fronts.take().map(|fronts| fronts.on_threads(threads)).transpose()?;
+        Ok(())
     }
 
     /// Whether pivots were looked for in whole columns.
@@ -80,7 +93,10 @@ impl UnsymmetricFactor {
                 fronts.reorder(self.pattern.view(), &self.weak_unknowns())?;
                 fronts
             }
-            None => Factors::new(Analysis::new(self.pattern.view(), &self.weak_unknowns())?)?,
+            None => {
+                let analysis = Analysis::new(self.pattern.view(), &self.weak_unknowns())?;
+                Factors::with_threads(analysis, self.threads)?
+            }
         };
         let pivots = fronts.factor(&self.values)?;
         self.perturbed = pivots.perturbed > 0;

@@ -19,7 +19,7 @@ pub struct Factors {
     pub(crate) values: Vec<f64>,
     /// Row that every column changed places with, counted from the first of its front.
     pub(crate) exchanges: Vec<u32>,
-    schedule: Schedule,
+    pub(crate) schedule: Schedule,
     sites: Vec<Site>,
     /// Factorisations so far.
     factorisations: usize,
@@ -55,9 +55,9 @@ impl Factors {
         Self::with_threads(analysis, 1)
     }
 
-    /// As [`Self::new`], for factorisations on several threads.
+    /// As [`Self::new`], for factorisations and solutions on several threads.
     ///
-    /// Results differ from those on one thread by no more than the order of sums inside large products.
+    /// Results differ from those on one thread by no more than the order of sums inside large products and from separate subtrees.
     ///
     /// # Errors
     /// As [`Self::new`].

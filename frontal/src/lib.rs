@@ -8,7 +8,7 @@
 //! [`Solver`] is the whole of it: analyse, scale, factor, solve, refine. [`Analysis`], [`Factors`], [`Scaling`] and [`System`]
 //! are its parts, for callers that scale and check for themselves.
 //!
-//! On one thread the same matrix gives the same bits.
+//! On one thread the same matrix gives the same bits; on several, factors and solutions differ from those by no more than the order of sums.
 
 mod analysis;
 mod dissection;
@@ -29,6 +29,7 @@ mod substitution;
 mod supernodes;
 mod sweep;
 mod tree;
+mod walk;
 
 pub use analysis::Analysis;
 pub use error::Error;

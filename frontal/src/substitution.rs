@@ -5,6 +5,7 @@ use crate::factors::Factors;
 use crate::kernel::{Products, Update};
 use crate::pattern::Kind;
 use crate::sweep::{LANES, Row};
+use crate::walk::Entry;
 
 /// Fewer right-hand sides than this are solved one by one.
 const FEW: usize = 3;
@@ -27,13 +28,7 @@ impl Factors {
         let mut ordered = std::mem::take(&mut self.work);
         ordered.clear();
         ordered.extend(self.analysis.order.iter().map(|&equation| x[equation as usize]));
-        let mut below = Vec::new();
-        for front in &self.analysis.fronts {
-            self.forward(front, &mut ordered, &mut below);
-        }
-        for front in self.analysis.fronts.iter().rev() {
-            self.back(front, &mut ordered, &mut below);
-        }
+        self.walk(&mut ordered);
         for (value, &equation) in ordered.iter().zip(&self.analysis.order) {
             x[equation as usize] = *value;
         }
@@ -51,7 +46,7 @@ impl Factors {
             row.iter_mut().zip(numbers).for_each(|(value, number)| *value = *number);
             row
         }));
-        self.sweep(&mut rows);
+        self.walk(&mut rows);
         for (row, &equation) in rows.iter().zip(&self.analysis.order) {
             let numbers = x[equation as usize..].iter_mut().step_by(size);
             numbers.zip(row).for_each(|(number, value)| *number = *value);
@@ -87,6 +82,28 @@ impl Factors {
         match self.analysis.kind {
             Kind::Unsymmetric => solve_upper(square, own),
             Kind::Symmetric => solve_lower_transposed(square, own),
+        }
+    }
+}
+
+impl Entry for f64 {
+    const ZERO: Self = 0.0;
+
+    fn add(&mut self, other: &Self) {
+        *self += other;
+    }
+
+    fn forward(factors: &Factors, fronts: &[u32], x: &mut [Self]) {
+        let mut below = Vec::new();
+        for &front in fronts {
+            factors.forward(&factors.analysis.fronts[front as usize], x, &mut below);
+        }
+    }
+
+    fn back(factors: &Factors, fronts: &[u32], x: &mut [Self]) {
+        let mut below = Vec::new();
+        for &front in fronts.iter().rev() {
+            factors.back(&factors.analysis.fronts[front as usize], x, &mut below);
         }
     }
 }

@@ -6,6 +6,7 @@
 use crate::analysis::Front;
 use crate::factors::Factors;
 use crate::pattern::Kind;
+use crate::walk::Entry;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Right-hand sides that are treated together.
@@ -17,30 +18,46 @@ pub(crate) type Row = [f64; LANES];
 /// Columns that are treated together.
 const PANEL: usize = 4;
 
-impl Factors {
-    /// Solves in place, equations in the order of elimination.
-    pub(crate) fn sweep(&self, x: &mut [Row]) {
-        Arch::new().dispatch(Sweep { factors: self, x });
+impl Entry for Row {
+    const ZERO: Self = [0.0; LANES];
+
+    fn add(&mut self, other: &Self) {
+        self.iter_mut().zip(other).for_each(|(x, y)| *x += y);
+    }
+
+    fn forward(factors: &Factors, fronts: &[u32], x: &mut [Self]) {
+        Arch::new().dispatch(Sweep { factors, fronts, x, back: false });
+    }
+
+    fn back(factors: &Factors, fronts: &[u32], x: &mut [Self]) {
+        Arch::new().dispatch(Sweep { factors, fronts, x, back: true });
     }
 }
 
 struct Sweep<'a> {
     factors: &'a Factors,
+    fronts: &'a [u32],
     x: &'a mut [Row],
+    /// Back substitution, else forward.
+    back: bool,
 }
 
 impl WithSimd for Sweep<'_> {
     type Output = ();
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, s: S) {
-        let fronts = &self.factors.analysis.fronts;
+        let all = &self.factors.analysis.fronts;
+        let fronts = self.fronts.iter().map(|&front| &all[front as usize]);
+        let (mut own, mut below) = (Vec::new(), Vec::new());
         for register in 0..LANES / S::F64_LANES {
-            let (mut own, mut below) = (Vec::new(), Vec::new());
-            for front in fronts {
-                self.forward(s, register, front, &mut own, &mut below);
-            }
-            for front in fronts.iter().rev() {
-                self.back(s, register, front, &mut own, &mut below);
+            if self.back {
+                for front in fronts.clone().rev() {
+                    self.back(s, register, front, &mut own, &mut below);
+                }
+            } else {
+                for front in fronts.clone() {
+                    self.forward(s, register, front, &mut own, &mut below);
+                }
             }
         }
     }

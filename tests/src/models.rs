@@ -14,6 +14,7 @@ ansatz::include_model!("../models/film.ansatz");
 ansatz::include_model!("../models/plates.ansatz");
 ansatz::include_model!("../models/plate.ansatz");
 ansatz::include_model!("../models/roll.ansatz");
+ansatz::include_model!("../models/roll_by_force.ansatz");
 ansatz::include_model!("../models/balloon.ansatz");
 ansatz::include_model!("../models/cave_in.ansatz");
 ansatz::include_model!("../models/turek_csm1.ansatz");
@@ -24,7 +25,7 @@ ansatz::include_model!("../models/sheet.ansatz");
 use ansatz::generated::Program;
 
 /// All of them.
-pub static PROGRAMS: [&Program; 20] = [
+pub static PROGRAMS: [&Program; 21] = [
     &patch_plane::PROGRAM,
     &patch_axi::PROGRAM,
     &crushed::PROGRAM,
@@ -39,6 +40,7 @@ pub static PROGRAMS: [&Program; 20] = [
     &plates::PROGRAM,
     &plate::PROGRAM,
     &roll::PROGRAM,
+    &roll_by_force::PROGRAM,
     &balloon::PROGRAM,
     &cave_in::PROGRAM,
     &turek_csm1::PROGRAM,

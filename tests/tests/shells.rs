@@ -2,13 +2,15 @@
 
 use ansatz::Simulation;
 use ansatz::generated::Program;
-use ansatz_tests::models::{balloon, cave_in, plate, roll};
+use ansatz_tests::models::{balloon, cave_in, plate, roll, roll_by_force};
 use ansatz_tests::notes::Notes;
 
 /// The rows of the first table of a run.
 struct Rows {
     program: &'static Program,
     rows: Vec<Vec<f64>>,
+    /// Newton iterations of the whole run.
+    iterations: usize,
 }
 
 impl Rows {
@@ -16,7 +18,8 @@ impl Rows {
         let mut simulation = Simulation::new(program, values).expect("the model can be built");
         let mut notes = Notes::default();
         simulation.run(&mut notes, None).expect("the run reaches its end");
-        Self { program, rows: notes.rows.into_iter().map(|(_, row)| row).collect() }
+        let rows = notes.rows.into_iter().map(|(_, row)| row).collect();
+        Self { program, rows, iterations: simulation.record().statistics().iterations }
     }
 
     fn column(&self, name: &str) -> Vec<f64> {
@@ -74,6 +77,17 @@ fn a_moment_rolls_a_thin_strip_up_to_a_circle_on_a_coarse_mesh() {
     assert_near(rows.last("y_end"), 0.0, 1e-5);
     // Half a turn ends above its start by the diameter 2 L/pi; edges are parabolas of 9 degrees.
     assert_near(rows.column("y_end")[2] / (200.0 / std::f64::consts::PI), 1.0, 1e-3);
+}
+
+#[test]
+fn tension_and_shear_force_as_unknowns_spare_most_iterations_and_change_nothing() {
+    let by_stretch = Rows::of(&roll::PROGRAM, &roll::Parameters::default().values());
+    let by_force = Rows::of(&roll_by_force::PROGRAM, &roll_by_force::Parameters::default().values());
+    for name in ["turned", "x_end", "y_end", "unturned", "x_arch", "y_arch"] {
+        assert_near(by_force.last(name), by_stretch.last(name), 1e-6);
+    }
+    let [by_stretch, by_force] = [by_stretch.iterations, by_force.iterations];
+    assert!(3 * by_force < by_stretch, "{by_force} iterations instead of {by_stretch}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::MeshError;
 use super::outline::{Chain, Outline};
-use ansatz_geometry::{Curve, Point};
+use ansatz_geometry::{Curve, Point, point};
 use std::rc::Rc;
 
 /// Cells are not made smaller than this part of the edges they touch, which the bodies have divided.
@@ -27,8 +27,10 @@ impl FilmSize {
     pub(super) fn limit(&self, outline: &Outline, sizes: &mut [f64]) -> Result<(), MeshError> {
         let surfaces = self.surfaces.each_ref().map(|names| surface(outline, names));
         for side in (0..2).filter(|&side| self.at[side]) {
+            let facing: Vec<Edge> =
+                surfaces[1 - side].iter().flat_map(|chain| Edge::along(outline, chain)).collect();
             for &p in surfaces[side].iter().flat_map(|chain| &chain.points) {
-                let gap = distance(outline, &surfaces[1 - side], outline.points[p]);
+                let gap = distance(&facing, outline.points[p]);
                 if gap.is_finite() {
                     let size = (self.size)(gap);
                     if !(size > 0.0 && size.is_finite()) {
@@ -51,16 +53,37 @@ fn surface<'a>(outline: &'a Outline, names: &[&str]) -> Vec<&'a Chain> {
     outline.chains.iter().filter(named).collect()
 }
 
-/// Distance of a point from a surface, each edge taken as two straight ones; infinite where there is none.
-fn distance(outline: &Outline, surface: &[&Chain], from: Point) -> f64 {
-    let mut nearest = f64::INFINITY;
-    for chain in surface {
-        for ([a, b], &middle) in chain.edges().zip(&chain.middles) {
-            let ends = [outline.points[a], middle, outline.points[b]];
-            for half in ends.windows(2) {
-                nearest = nearest.min(Curve::Line { from: half[0], to: half[1] }.distance(from));
-            }
-        }
+/// A curved edge taken as two straight ones.
+struct Edge {
+    start: Point,
+    middle: Point,
+    end: Point,
+    /// Distance of the further end from the middle.
+    reach: f64,
+}
+
+impl Edge {
+    /// The edges of a chain.
+    fn along<'a>(outline: &'a Outline, chain: &'a Chain) -> impl Iterator<Item = Self> + 'a {
+        chain.edges().zip(&chain.middles).map(|([a, b], &middle)| {
+            let (start, end) = (outline.points[a], outline.points[b]);
+            let reach = point::distance(start, middle).max(point::distance(middle, end));
+            Self { start, middle, end, reach }
+        })
     }
-    nearest
+
+    fn distance(&self, from: Point) -> f64 {
+        let half = |from: Point, to: Point| Curve::Line { from, to };
+        half(self.start, self.middle).distance(from).min(half(self.middle, self.end).distance(from))
+    }
+}
+
+/// Distance of a point from a surface; infinite where there is none.
+fn distance(surface: &[Edge], from: Point) -> f64 {
+    let nearer = |nearest: f64, edge: &Edge| {
+        // No point of the edge is nearer than that.
+        let bound = point::distance(edge.middle, from) - edge.reach;
+        if bound < nearest { nearest.min(edge.distance(from)) } else { nearest }
+    };
+    surface.iter().fold(f64::INFINITY, nearer)
 }

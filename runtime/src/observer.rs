@@ -54,6 +54,10 @@ pub trait Observer {
     fn row(&mut self, _table: usize, _values: &[f64]) -> Result<(), Error> {
         Ok(())
     }
+    /// Whether [`Self::frame`] does anything: frames that nobody wants are not sampled.
+    fn wants_frames(&self) -> bool {
+        false
+    }
     /// A frame is due.
     fn frame(&mut self, _frame: Frame) -> Result<(), Error> {
         Ok(())
@@ -79,6 +83,9 @@ impl Observer for Both<'_> {
     fn row(&mut self, table: usize, values: &[f64]) -> Result<(), Error> {
         self.0.row(table, values)?;
         self.1.row(table, values)
+    }
+    fn wants_frames(&self) -> bool {
+        self.0.wants_frames() || self.1.wants_frames()
     }
     fn frame(&mut self, frame: Frame) -> Result<(), Error> {
         self.0.frame(frame.clone())?;

@@ -32,6 +32,9 @@ impl Observer for Notes {
         self.rows.push((table, values.to_vec()));
         Ok(())
     }
+    fn wants_frames(&self) -> bool {
+        true
+    }
     fn frame(&mut self, frame: Frame) -> Result<(), Error> {
         self.frames.push(frame);
         Ok(())

@@ -72,6 +72,10 @@ impl Observer for Results {
         self.tables[table].row(values)
     }
 
+    fn wants_frames(&self) -> bool {
+        self.wants_frames
+    }
+
     fn frame(&mut self, frame: Frame) -> Result<(), Error> {
         self.frames.as_mut().map_or(Ok(()), |writer| writer.send(frame))
     }

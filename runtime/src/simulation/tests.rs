@@ -9,7 +9,7 @@ use crate::generated::{
     PointInput, Program, Record, Row, Solve, Space, Start, State, StateSystem, Table, Trigger, Use,
 };
 use crate::mesh::structured_rectangle;
-use crate::observer::{Frame, Observer};
+use crate::observer::{Both, Frame, Observer};
 
 type Rows = [Row];
 
@@ -216,14 +216,39 @@ impl Observer for Notes {
         self.rows.push(values.to_vec());
         Ok(())
     }
+    fn wants_frames(&self) -> bool {
+        true
+    }
     fn frame(&mut self, frame: Frame) -> Result<(), Error> {
         self.frames.push(frame);
         Ok(())
     }
 }
 
+/// An observer of nothing.
+struct Silent;
+
+impl Observer for Silent {}
+
+/// Told of a frame though it wants none, it stops the run.
+struct NoFrames;
+
+impl Observer for NoFrames {
+    fn frame(&mut self, _: Frame) -> Result<(), Error> {
+        Err(Error::Model("a frame that nobody wants".into()))
+    }
+}
+
 fn simulation(program: &'static Program, limit: f64) -> Simulation {
     Simulation::on_mesh(program, &[limit], structured_rectangle(3, 3, |x, y| [x, y])).unwrap()
+}
+
+#[test]
+fn frames_are_sampled_where_an_observer_wants_them() {
+    assert_eq!(simulation(&DECAY, 0.0).run(&mut NoFrames, None).unwrap(), "finished");
+    let mut notes = Notes::default();
+    let both = simulation(&DECAY, 0.0).run(&mut Both(&mut notes, &mut Silent), None).unwrap();
+    assert_eq!((both, notes.frames.len()), ("finished", 9));
 }
 
 #[test]

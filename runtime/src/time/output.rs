@@ -60,6 +60,9 @@ impl Outputs {
                 observer.row(table, &row(&self.tables[table], record, time))?;
             }
         }
+        if !observer.wants_frames() {
+            return Ok(());
+        }
         for (frame, schedule) in self.frame_schedules.iter_mut().enumerate() {
             for time in schedule.take(end) {
                 let columns = system.sample(frame, &point(time), &record.at(time));

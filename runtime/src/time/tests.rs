@@ -196,6 +196,9 @@ impl Observer for Notes {
         self.rows.push(values.to_vec());
         Ok(())
     }
+    fn wants_frames(&self) -> bool {
+        true
+    }
     fn frame(&mut self, frame: crate::observer::Frame) -> Result<(), Error> {
         self.frames.push((frame.time, frame.columns[0][0]));
         Ok(())

@@ -180,6 +180,46 @@ fn settings_with_which_no_run_can_start_are_refused() {
 }
 
 #[test]
+fn intervals_durations_and_ranges_with_which_no_run_can_start_are_refused() {
+    let settings = "param n = 0;\nsolve { time = 0 s .. 1 s;  step = euler(max: 1 ms, min: 1 s); }\n\
+        state s: Number = 0 in 2 .. 1;\nphysics rest { dt(s)*(1 s) == 1; }\n\
+        event a every n*1 s;\nevent b every -1 s;\nevent c when t > 1 s for -2 s;\n\
+        output { fields on square every 0 s: T;  table \"t.csv\" every 0 s: t;  checkpoint every 1 s/n; }";
+    insta::assert_snapshot!("intervals_out_of_range", said(settings));
+    let settings = "event a every 0.1 s;  event b every step;  event c when t > 0.1 s for 0 s;\n\
+        solve { time = 0 s .. 1 s;  step = euler(max: 1 s, min: 1 s); }\n\
+        output { fields on square every step: T;  table \"t.csv\" every 0.1 s: t; }";
+    assert_eq!(said(settings), "");
+}
+
+#[test]
+fn a_mesh_size_on_a_pair_is_positive_at_every_gap() {
+    let size = |size: &str| {
+        said(&format!(
+            "param layers = 0; geometry {{ path lid = from (0, 2 m) line face to (1 m, 2 m) line to (1 m, 3 m) line to (0, 3 m) line to (0, 2 m);
+               path left = from (0, 2 m) line to (0, 1 m); path right = from (1 m, 1 m) line to (1 m, 2 m);
+               region block = loop(lid); region oil = loop(rim.top, left, lid.face, right); }}
+             field u: Vector[Length] in P2 on square + block = 0; param q = 1 Pa; moving oil by u;
+             physics body {{ energy q*dot(u, u)/(1 m^2) on square + block; }}
+             let film = pair(rim.top, lid.face, search: 2 m);
+             mesh {{ size = {size} on film; }}"
+        ))
+    };
+    for (wrong, value) in [
+        ("0 m", "0 at a gap of 2"),
+        ("film.gap/layers", "infinite at a gap of 2"),
+        ("film.gap - 0.1 m", "-0.0375 at a gap of 0.0625"),
+    ] {
+        let words = size(wrong);
+        assert!(
+            words.contains("N015") && words.contains(value) && words.contains("1 error"),
+            "{wrong}: {words}"
+        );
+    }
+    assert_eq!(size("film.gap/3"), "");
+}
+
+#[test]
 fn paths_that_miss_what_they_are_to_be_attached_to_are_warned_of() {
     let wires = "geometry {\n\
         path beside   = from (1.005 m, 0.25 m) line to (2 m, 0.25 m);\n\

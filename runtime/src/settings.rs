@@ -1,8 +1,10 @@
-//! Parameter values from outside: `NAME=VALUE`, such as `r_g="1.2 um"`, checked for name, unit and range.
+//! Parameter values from outside: `NAME=VALUE`, such as `r_g="1.2 um"`, checked for name, unit and range; and the settings of a run that follow
+//! from them.
 
 use crate::error::Error;
-use crate::generated::{Parameter, Program};
+use crate::generated::{Parameter, Program, Solve, Trigger};
 use ansatz_units::{Dimension, Rational, nearest, parse_quantity};
+use std::cmp::Ordering;
 use std::num::NonZeroUsize;
 
 /// Threads that can be asked for; more would only wait for each other.
@@ -56,6 +58,47 @@ pub fn check(program: &Program, g: &[f64], values: &[f64]) -> Result<(), Error> 
         }
     }
     Ok(())
+}
+
+/// Settings of the solution with the parameters in `g`, if a run can start with them and with the intervals and durations of the events.
+///
+/// # Errors
+/// [`Error::Model`] naming what is not positive, or a time that ends before it starts.
+pub fn solution(program: &Program, g: &[f64]) -> Result<Solve, Error> {
+    let solve = (program.solve)(g);
+    if solve.time.is_some_and(|(start, end)| start.partial_cmp(&end) != Some(Ordering::Less)) {
+        return Err(Error::Model(String::from("the time of a run must end after it starts")));
+    }
+    // What the model does not name is infinite, or zero.
+    require(solve.max_step > 0.0, || format!("`max: {}` in `step` is no time above 0", solve.max_step))?;
+    require(solve.min_step >= 0.0, || format!("`min: {}` in `step` is no time above 0", solve.min_step))?;
+    for tolerance in [solve.step_tolerance, solve.newton_tolerance] {
+        require(tolerance > 0.0, || format!("`tolerance: {tolerance}` is not above 0"))?;
+    }
+    require(solve.newton_iterations > 0, || String::from("`iterations` in `newton` is below 1"))?;
+    for event in program.events {
+        let name = event.name;
+        match event.trigger {
+            Trigger::Every(period) => require(period(g) > 0.0, || {
+                format!(
+                    "the event `{name}` would fire every {}: give a time above 0, or write `every step`",
+                    period(g)
+                )
+            })?,
+            Trigger::When { duration, .. } => require(duration(g) >= 0.0, || {
+                format!(
+                    "the condition of `{name}` would have to last {}: give a time of 0 or more",
+                    duration(g)
+                )
+            })?,
+            Trigger::EveryStep => {}
+        }
+    }
+    Ok(solve)
+}
+
+fn require(holds: bool, message: impl Fn() -> String) -> Result<(), Error> {
+    if holds { Ok(()) } else { Err(Error::Model(message() + "; change the parameters that it is made of")) }
 }
 
 /// Splits `NAME=VALUE`.

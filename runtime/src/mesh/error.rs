@@ -86,8 +86,8 @@ impl fmt::Display for MeshError {
             }
             E::BadFilmSize { size, gap, at: [x, y] } => write!(
                 f,
-                "the mesh size that a gap of {gap:.3e} at ({x:.4}, {y:.4}) asks for is {size:.3e}, not a positive length; give it a \
-                 lower bound, such as `max(0.01 um, film.gap/2)`"
+                "the mesh size that a gap of {gap:.3e} at ({x:.4}, {y:.4}) asks for is {size:.3e}, not a positive length; give it \
+                 bounds, such as `max(0.01 um, film.gap/2)`"
             ),
             E::BadGrowth { growth } => {
                 write!(f, "the mesh growth rate {growth} is not above 1; use e.g. `growth = 1.25`")

@@ -341,9 +341,34 @@ fn states_alone_run_and_follow_at_once_when_one_is_set() {
     assert!((end[2] - 2.0 * (jump - 2.0).exp()).abs() < 1e-3, "{end:?}");
 }
 
+/// Why a run of this program cannot start.
+fn refusal(program: &'static Program) -> String {
+    let refused = Simulation::on_mesh(program, &[0.0], structured_rectangle(1, 1, |x, y| [x, y]));
+    refused.err().map_or_else(String::new, |error| error.to_string())
+}
+
 #[test]
-fn a_time_that_ends_before_it_starts_is_refused() {
+fn settings_with_which_no_run_can_start_are_refused() {
     static BACKWARDS: Program = program(|_| Solve { time: Some((2.0, 1.0)), ..SOLVE });
-    let refused = Simulation::on_mesh(&BACKWARDS, &[0.0], structured_rectangle(1, 1, |x, y| [x, y]));
-    assert!(matches!(refused.err(), Some(Error::Model(text)) if text.contains("after it starts")));
+    static NO_TIME: Program = program(|_| Solve { time: Some((0.0, f64::NAN)), ..SOLVE });
+    static NO_STEP: Program = program(|_| Solve { max_step: 0.0, ..SOLVE });
+    static NO_TOLERANCE: Program = program(|_| Solve { newton_tolerance: 0.0, ..SOLVE });
+    static NO_ITERATION: Program = program(|_| Solve { newton_iterations: 0, ..SOLVE });
+    static NO_INTERVAL: Program = Program {
+        events: &[Event { name: "beat", doc: "", trigger: Trigger::Every(|g| g[0]), actions: &[] }],
+        ..program(|_| SOLVE)
+    };
+    let claims: [(&'static Program, &str); 6] = [
+        (&BACKWARDS, "after it starts"),
+        (&NO_TIME, "after it starts"),
+        (&NO_STEP, "`max: 0`"),
+        (&NO_TOLERANCE, "`tolerance: 0`"),
+        (&NO_ITERATION, "`iterations`"),
+        (&NO_INTERVAL, "`beat` would fire every 0"),
+    ];
+    for (program, words) in claims {
+        let message = refusal(program);
+        assert!(message.contains(words), "{words}: {message}");
+    }
+    assert_eq!(refusal(&DECAY), "");
 }

@@ -44,6 +44,7 @@ pub use unknowns::{FieldNumbers, Unknowns, domain_nodes, path_edges, region_cell
 use crate::error::Error;
 use crate::generated::{Program, Solve};
 use crate::mesh::{Follower, Mesh};
+use crate::settings::solution;
 use crate::solve::border::BorderedSolver;
 use crate::solve::sparse::{MatrixKind, SparsePattern};
 use crate::time::control::with_step_bounds;
@@ -167,10 +168,7 @@ impl System {
             StateSolver::new(system, program.layout, bounds)
         });
         let cell_size = typical_edge(&mesh);
-        let settings = with_step_bounds((program.solve)(&g));
-        if settings.time.is_some_and(|(start, end)| start >= end) {
-            return Err(Error::Model(String::from("the time of a run must end after it starts")));
-        }
+        let settings = with_step_bounds(solution(program, &g)?);
         Ok(Self {
             program,
             settings,

@@ -193,6 +193,39 @@ fn intervals_durations_and_ranges_with_which_no_run_can_start_are_refused() {
 }
 
 #[test]
+fn a_load_in_the_plane_acts_on_one_unit_of_depth() {
+    let turned = |moment: &str| {
+        said(&format!(
+            "field beta: Number in P1 on square = 0; param M = 3 N; param E = 1 Pa;
+             physics bending {{ energy E*beta^2 on square; load beta@(1 m, 0 m) with {moment}; }}"
+        ))
+    };
+    let per_depth = turned("M");
+    assert!(
+        per_depth.contains("U104")
+            && per_depth.contains("a plane model is 1 m deep")
+            && per_depth.contains("`(1 m)`"),
+        "{per_depth}"
+    );
+    assert_eq!(turned("M*(1 m)"), "");
+    assert!(!turned("M/(1 m)").contains("deep"), "no depth is missing");
+}
+
+#[test]
+fn the_origin_needs_no_unit() {
+    let at = |place: &str| {
+        codes(&format!(
+            "field q: Number in P1 on square = 0; param E = 1 Pa; physics rest {{ energy E*q^2 on square; }}
+             output {{ table \"q.csv\" every step: middle = q@{place}; }}"
+        ))
+    };
+    for origin in ["(0, 0)", "(0, 0.5 m)", "(0, 0) m"] {
+        assert_eq!(at(origin), Vec::<&str>::new(), "{origin}");
+    }
+    assert_eq!(at("(0, 1)"), ["N003"], "1 has no unit");
+}
+
+#[test]
 fn a_mesh_size_on_a_pair_is_positive_at_every_gap() {
     let size = |size: &str| {
         said(&format!(

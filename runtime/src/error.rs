@@ -1,5 +1,6 @@
 //! What can go wrong when a compiled model runs. Every variant says what, where in model terms, and what to do now.
 
+use crate::settings::counted;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -105,7 +106,8 @@ impl fmt::Display for SolveError {
             return writeln!(f, "{why} (after the step to t = {:.6})", self.time);
         }
         writeln!(f, "{} at t = {:.6}, step {:.3e}", self.cause, self.time, self.step)?;
-        writeln!(f, "  {} iterations, relative residual {:.2e}", self.iterations, self.residual)?;
+        let iterations = counted(self.iterations, "iteration");
+        writeln!(f, "  {iterations}, relative residual {:.2e}", self.residual)?;
         writeln!(f, "  largest residual: {}", self.place)?;
         for (term, value) in &self.terms {
             writeln!(f, "    {term:<40} {value:+.4e}")?;

@@ -121,6 +121,11 @@ pub fn display(value: f64) -> String {
     }
 }
 
+/// `1 iteration`, `3 iterations`.
+pub fn counted(count: usize, word: &str) -> String {
+    if count == 1 { format!("1 {word}") } else { format!("{count} {word}s") }
+}
+
 /// A time such as `50 s`, in the model's unit.
 ///
 /// # Errors

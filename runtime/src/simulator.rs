@@ -1,11 +1,11 @@
 //! The command line of a compiled model: the same for `ansatz run` and for an executable made by `ansatz build`.
 
 use crate::error::Error;
-use crate::generated::{Program, Record};
+use crate::generated::Program;
 use crate::observer::Both;
 use crate::output::progress::{Progress, with_unit};
 use crate::output::results::Results;
-use crate::output::summary::Run;
+use crate::output::summary::{Fired, Run};
 use crate::settings::{check_end, display, resolve, split, threads, time};
 use crate::simulation::Simulation;
 use clap::{Arg, ArgAction, ArgMatches, Command};
@@ -138,9 +138,13 @@ fn run(program: &'static Program, matches: &ArgMatches) -> Result<(), Error> {
 fn describe(program: &Program, simulation: &Simulation, error: Option<&Error>) -> Run {
     let (record, system) = (simulation.record(), simulation.system());
     let statistics = record.statistics();
-    let mut events: Vec<(String, f64)> =
-        program.events.iter().filter_map(|e| Some((e.name.into(), record.event_time(e.name)?))).collect();
-    events.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let fired = |event: usize| {
+        let mut firings = record.fired().iter().filter(|firing| firing.event == event);
+        let first = firings.next()?;
+        Some(Fired { event, time: first.time, count: 1 + firings.count() })
+    };
+    let mut events: Vec<Fired> = (0..program.events.len()).filter_map(fired).collect();
+    events.sort_by(|a, b| a.time.total_cmp(&b.time));
     Run {
         outcome: record.outcome().into(),
         time: record.times().last().copied().unwrap_or(f64::NAN),

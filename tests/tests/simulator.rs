@@ -118,6 +118,18 @@ fn a_run_can_end_early_and_write_tables_only() {
 }
 
 #[test]
+fn an_event_is_told_once_and_counted() {
+    let out = folder("beats");
+    let answer = call(CRUSHED, &["--until", "300 ms", "--no-frames"], &out);
+    assert_eq!(answer.code, Some(0), "{}", answer.errors);
+    let lines: Vec<&str> = answer.errors.lines().filter(|line| line.starts_with("beat ")).collect();
+    assert_eq!(lines, ["beat at t = 0.10 s", "beat fired 3 times, last at t = 0.30 s"], "{}", answer.errors);
+    assert!(!answer.errors.contains(" 1 iterations"), "{}", answer.errors);
+    let summary = run_json(&out);
+    assert!(summary.contains("\"time\": 0.1") && summary.contains("\"count\": 3"), "{summary}");
+}
+
+#[test]
 fn the_number_of_threads_is_noted() {
     let out = folder("threads");
     let answer = call(CRUSHED, &["--threads", "2", "--until", "100 ms", "--no-frames", "--quiet"], &out);

@@ -69,6 +69,7 @@ impl Checker<'_> {
             diagnostic =
                 diagnostic.help(format!("the library has one: `use std::{}::{};`", module.name, name.text));
         }
+        let diagnostic = self.was_dropped(&name.text, diagnostic);
         self.report(diagnostic)
     }
 

@@ -19,6 +19,16 @@ impl Model {
         self.beyond(domain, &whole.pieces)
     }
 
+    /// The first piece that two domains share; points where pieces end do not count.
+    pub(crate) fn shared(&self, a: &Domain, b: &Domain) -> Option<Piece> {
+        let in_other = |of: &Domain, other: &Domain| {
+            let simple = of.pieces.iter().flat_map(|piece| self.surfaces(*piece));
+            let carried = |piece: &Piece| other.pieces.iter().any(|carrier| self.carries(*carrier, *piece));
+            simple.into_iter().find(carried)
+        };
+        in_other(a, b).or_else(|| in_other(b, a))
+    }
+
     fn beyond(&self, domain: &Domain, carriers: &[Piece]) -> Option<Piece> {
         let simple = domain.pieces.iter().flat_map(|piece| self.surfaces(*piece));
         simple.into_iter().find(|piece| !carriers.iter().any(|carrier| self.carries(*carrier, *piece)))

@@ -233,7 +233,33 @@ impl Checker<'_> {
         {
             diagnostic = diagnostic.help(format!("a label belongs to its path: `{}.{name}`", path.name));
         }
+        for help in self.known_places() {
+            diagnostic = diagnostic.help(help);
+        }
+        let diagnostic = self.was_dropped(name, diagnostic);
         self.report(diagnostic)
+    }
+
+    /// Every name of places, a line for each kind.
+    fn known_places(&self) -> Vec<String> {
+        let named = |is: &dyn Fn(Symbol) -> bool| {
+            let names = self.scopes[0].iter().filter(|(_, symbol)| is(*symbol));
+            names.map(|(name, _)| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+        };
+        let value = |at: usize| &self.lets[at].ast.value;
+        let pair = |symbol| matches!(symbol, Symbol::Let(at) if is_pair(value(at)));
+        let sum = |symbol| {
+            let places = |at| !is_pair(value(at)) && self.names_places(value(at), &Env::default(), 0);
+            matches!(symbol, Symbol::Let(at) if places(at))
+        };
+        let kinds = [
+            ("regions", named(&|symbol| matches!(symbol, Symbol::Region(_)))),
+            ("paths", named(&|symbol| matches!(symbol, Symbol::Path(_)))),
+            ("sums", named(&sum)),
+            ("pairs", named(&pair)),
+        ];
+        let known = kinds.into_iter().filter(|(_, names)| !names.is_empty());
+        known.map(|(kind, names)| format!("{kind}: {names}")).collect()
     }
 
     fn path_named(&mut self, e: &ast::Expr, env: &Env) -> Checked<PathId> {

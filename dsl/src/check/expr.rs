@@ -173,7 +173,18 @@ impl Checker<'_> {
         if let Some(place) = self.private(name) {
             diagnostic = diagnostic.label(place, "this one is private to its block");
         }
+        let diagnostic = self.was_dropped(name, diagnostic);
         self.report(diagnostic)
+    }
+
+    /// Says so where a variant has dropped what a missing name stood for.
+    pub(super) fn was_dropped(&self, name: &str, diagnostic: Diagnostic) -> Diagnostic {
+        match self.program.dropped.iter().find(|dropped| dropped.text == name) {
+            Some(dropped) => diagnostic
+                .label(dropped.span, "dropped here")
+                .help(format!("what uses `{name}` goes with it: `drop` or `replace` that as well")),
+            None => diagnostic,
+        }
     }
 
     /// Where a block of the model declares a `let` of this name for itself.
@@ -403,7 +414,13 @@ impl Checker<'_> {
             };
             return Ok(Expr { kind, ty, span });
         }
-        let (value, place) = (value.map(settle), self.settled(place, env));
+        let place = self.expr(place, env).map(|mut place| {
+            if let Type::Value(Shape::Vector, _) = place.ty {
+                super::shape::coerce(&mut place, &Type::POSITION);
+            }
+            settle(place)
+        });
+        let value = value.map(settle);
         let (value, place) = (Box::new(value?), Box::new(place?));
         let ty = value.ty.clone();
         let kind = match place.ty {
@@ -417,7 +434,8 @@ impl Checker<'_> {
                         place.span,
                         "after `@` stands a time, a point or an event",
                     )
-                    .here(format!("this is {words}")),
+                    .here(format!("this is {words}"))
+                    .help("write e.g. `p@(0, 2 mm)`, `p@(0.5 s)`, `p@start` or `p@NAME` of an event"),
                 ));
             }
         };

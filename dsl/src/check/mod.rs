@@ -17,6 +17,7 @@ mod frame;
 mod function;
 mod geometry;
 mod item;
+mod load;
 mod matching;
 mod moving;
 mod output;
@@ -26,6 +27,7 @@ mod physics;
 mod place;
 mod print;
 mod reduce;
+mod repeat;
 mod settings;
 mod shape;
 mod test;
@@ -62,9 +64,11 @@ pub fn check(program: &Program, sources: &SourceMap, sink: &mut Sink) -> Option<
     checker.functions();
     let model = checker.finish(program);
     place::check(&model, sink);
+    load::check(&model, sources, sink);
     if !sink.has_errors() {
         form::check(&model, sink);
-        moving::check(&model, sink);
+        moving::check(&model, sources, sink);
+        repeat::check(&model, sink);
         work::check(&model, sink);
         dae::check(&model, sources, sink);
     }

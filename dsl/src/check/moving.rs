@@ -7,7 +7,7 @@ use crate::diagnostic::{Code, Diagnostic, Sink};
 use crate::model::{
     Action, Expr, ExprKind, Field, FieldId, Model, Moving, Piece, RegionId, StatementKind, Tie, Type,
 };
-use crate::source::Span;
+use crate::source::{SourceMap, Span};
 use crate::syntax::ast;
 
 impl Checker<'_> {
@@ -88,9 +88,9 @@ impl Checker<'_> {
             Diagnostic::error(
                 Code::WrongKind,
                 span,
-                "a tie makes a field equal to another field or to its rate",
+                "a tie makes a whole field equal to another field or to its rate",
             )
-            .help("write `tie v == dt(u) on D;`"),
+            .help("write `tie v == dt(u) on D;`, for all components at once"),
         )
     }
 }
@@ -116,9 +116,9 @@ fn regions(field: &Field) -> impl Iterator<Item = RegionId> {
 }
 
 /// Reports fields that live on bodies and on moving regions at once, and displacements that live where they make things move.
-pub(super) fn check(model: &Model, sink: &mut Sink) {
+pub(super) fn check(model: &Model, sources: &SourceMap, sink: &mut Sink) {
     for moving in &model.moving {
-        let region = &model.geometry.regions[moving.region.0].name;
+        let region = sources.slice(moving.span);
         let by = &model.fields[moving.by.0];
         if regions(by).any(|region| region == moving.region) {
             let message = format!("`{}` lives on `{region}` itself", by.name);
@@ -145,15 +145,21 @@ pub(super) fn check(model: &Model, sink: &mut Sink) {
             );
         }
     }
-    let stays = |piece: &&Piece| !matches!(piece, Piece::Region(region) if moves(region));
+    let stays = |piece: &Piece| !matches!(piece, Piece::Region(region) if moves(region));
     for action in model.events.iter().flat_map(|event| &event.actions) {
         let Action::Remesh(domain) = action else { continue };
-        if let Some(&piece) = domain.pieces.iter().find(stays) {
-            let words = piece_words(&model.geometry, &model.pairs, piece);
-            sink.push(
-                Diagnostic::error(Code::Misplaced, domain.span, format!("{words} is no region that moves"))
-                    .help("`remesh(D)` is for what is declared `moving D by u;`; bodies keep their mesh"),
-            );
+        if domain.pieces.iter().any(stays) {
+            let message = format!("`{}` is no region that moves", sources.slice(domain.span));
+            sink.push(Diagnostic::error(Code::Misplaced, domain.span, message).help(what_moves(model)));
         }
+    }
+}
+
+/// Help where a region that moves is needed.
+fn what_moves(model: &Model) -> String {
+    let names = model.moving.iter().map(|moving| model.geometry.regions[moving.region.0].name.as_str());
+    match names.collect::<Vec<_>>().as_slice() {
+        [] => "`remesh(D)` is for what is declared `moving D by u;`, and nothing is".into(),
+        names => format!("`{}` moves; bodies keep their mesh", names.join("`, `")),
     }
 }

@@ -137,10 +137,10 @@ impl Checker<'_> {
             ("remesh", [ast::Arg { name: None, value, .. }]) => {
                 Ok(vec![Action::Remesh(self.domain(value, &Env::default())?)])
             }
-            ("stop" | "warn" | "set" | "remesh", _) => Err(self.report(
-                Diagnostic::error(Code::MissingArgument, action.span, "this action has other arguments")
-                    .help("write `stop`, `warn(\"text\")`, `set(x: value)` or `remesh(D)`"),
-            )),
+            ("stop", _) => Err(self.wrong_arguments(action, "nothing", "stop")),
+            ("warn", _) => Err(self.wrong_arguments(action, "one text", "warn(\"text\")")),
+            ("set", _) => Err(self.wrong_arguments(action, "states and their new values", "set(x: value)")),
+            ("remesh", _) => Err(self.wrong_arguments(action, "the region that moves", "remesh(D)")),
             (other, _) => Err(self.report(
                 Diagnostic::error(
                     Code::UnknownName,
@@ -153,6 +153,12 @@ impl Checker<'_> {
         }
     }
 
+    fn wrong_arguments(&mut self, action: &ast::Action, takes: &str, form: &str) -> Reported {
+        let message = format!("`{}` takes {takes}", action.name.text);
+        let diagnostic = Diagnostic::error(Code::MissingArgument, action.span, message);
+        self.report(diagnostic.help(format!("write `{form}`")))
+    }
+
     fn set_state(&mut self, arg: &ast::Arg) -> Checked<Action> {
         let Some(name) = &arg.name else {
             return Err(self.report(
@@ -161,15 +167,30 @@ impl Checker<'_> {
             ));
         };
         let Some(Symbol::State(id)) = self.symbol(&name.text, &Env::default()) else {
-            let states = self.names_of(|symbol| matches!(symbol, Symbol::State(_)));
-            let message = format!("there is no state `{}`", name.text);
-            let diagnostic = Diagnostic::error(Code::UnknownName, name.span, message)
-                .help_did_you_mean(&name.text, states);
-            return Err(self.report(diagnostic));
+            return Err(self.no_state(name));
         };
         let ty = Type::Value(Shape::Scalar, self.state_dimension(id)?);
         let value = self.typed(&arg.value, &ty, &format!("`{}`", name.text), &Env::default())?;
         Ok(Action::Set(id, value))
+    }
+
+    /// `set` of something that is no state.
+    fn no_state(&mut self, name: &ast::Ident) -> Reported {
+        let states = self.names_of(|symbol| matches!(symbol, Symbol::State(_)));
+        let message = format!("there is no state `{}`", name.text);
+        let mut diagnostic = Diagnostic::error(Code::UnknownName, name.span, message)
+            .help_did_you_mean(&name.text, states.iter().copied());
+        if let Some(symbol) = self.symbol(&name.text, &Env::default()) {
+            let what = symbol.words();
+            diagnostic =
+                diagnostic.help(format!("`{}` is {what}; `set` gives a state a new value", name.text));
+        }
+        let known = if states.is_empty() {
+            "the model has no states".into()
+        } else {
+            format!("the states are `{}`: `set({}: value)`", states.join("`, `"), states[0])
+        };
+        self.report(diagnostic.help(known))
     }
 
     /// A sweep over parameters.

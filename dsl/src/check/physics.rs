@@ -1,7 +1,7 @@
 //! Physics blocks: energies, residuals, loads, constraints and equations, each with the dimension that its integral must have.
 
-use super::shape::{settle, value};
-use super::{Binding, Checked, Checker, Env, Reported, domain, unit};
+use super::shape::settle;
+use super::{Binding, Checked, Checker, Env, Reported, domain};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::model::{BlockId, Domain, Expr, ExprKind, FieldId, Shape, Statement, StatementKind, Type};
 use crate::source::Span;
@@ -104,7 +104,7 @@ impl Checker<'_> {
         let domain = self.on(domain, env);
         let (quantity, mut force_value, domain) = (quantity?, force_value?, domain?);
         super::shape::coerce(&mut force_value, &quantity.ty);
-        let ((s, d), (t, e)) = (self.operand(&quantity)?, self.operand(&force_value)?);
+        let ((s, _), (t, _)) = (self.operand(&quantity)?, self.operand(&force_value)?);
         if s != t {
             return Err(self.report(
                 Diagnostic::error(
@@ -116,54 +116,8 @@ impl Checker<'_> {
                 .label(quantity.span, format!("this is {}", self.words(&quantity.ty))),
             ));
         }
-        // Virtual work, or virtual power where the unknown is a velocity; `work` compares them with the other statements.
-        let power = energy() / Dimension::TIME;
-        if [energy(), power].iter().any(|&total| d * e == per_measure(total, domain.as_ref())) {
-            return Ok(StatementKind::Load(quantity, force_value, domain));
-        }
-        Err(self.load_error(&quantity, d, &force_value, e, domain.as_ref()))
-    }
-
-    /// "this load is a Force, but `on nucleus` needs Force/Area".
-    fn load_error(
-        &mut self,
-        quantity: &Expr,
-        q: Dimension,
-        force: &Expr,
-        f: Dimension,
-        domain: Option<&Domain>,
-    ) -> Reported {
-        let want = per_measure(energy(), domain) / q;
-        let place = domain
-            .map_or_else(|| "without `on` it".into(), |d| format!("`on {}`", self.sources.slice(d.span)));
-        let message = format!("this load is {}, but {place} needs {}", described(f), described(want));
-        let mut diagnostic = Diagnostic::error(Code::LoadDimension, force.span, message)
-            .here(format!("this is {}", self.words(&force.ty)))
-            .label(quantity.span, format!("this is {}", self.words(&quantity.ty)));
-        if let Some(domain) = domain {
-            diagnostic = diagnostic.label(domain.span, measured_words(domain));
-            if domain::kind(domain) != domain::Kind::Contact
-                && f == want * domain::kind(domain).measure()
-                && let Some(help) = self.spread(force, quantity, domain)
-            {
-                diagnostic = diagnostic.help(help);
-            }
-        }
-        self.report(diagnostic)
-    }
-
-    /// Help for a total where a density is needed: its first parameter over the measure of the domain.
-    fn spread(&self, force: &Expr, quantity: &Expr, domain: &Domain) -> Option<String> {
-        let (q, d) = (self.sources.slice(quantity.span), self.sources.slice(domain.span));
-        let measure = if domain::kind(domain) == domain::Kind::Cells { "volume" } else { "area" };
-        let (text, total) = (self.sources.slice(force.span), leading_total(force)?);
-        let name = self.sources.slice(total.span);
-        let (start, end) =
-            (total.span.start.checked_sub(force.span.start)?, total.span.end.checked_sub(force.span.start)?);
-        let (before, after) = (text.get(..start as usize)?, text.get(end as usize..)?);
-        Some(format!(
-            "`{name}` looks like a total; spread it: `load {q} with {before}{name}/{measure}({d}){after} on {d};`"
-        ))
+        // Whether it is virtual work or virtual power follows from the other statements: `work` compares them.
+        Ok(StatementKind::Load(quantity, force_value, domain))
     }
 
     fn hold(
@@ -230,36 +184,14 @@ pub(super) fn energy() -> Dimension {
 }
 
 /// `total` per measure of a domain; `total` itself without one.
-fn per_measure(total: Dimension, domain: Option<&Domain>) -> Dimension {
+pub(super) fn per_measure(total: Dimension, domain: Option<&Domain>) -> Dimension {
     domain.map_or(total, |domain| total / domain::kind(domain).measure())
 }
 
-fn measured_words(domain: &Domain) -> &'static str {
+pub(super) fn measured_words(domain: &Domain) -> &'static str {
     match domain::kind(domain) {
         domain::Kind::Cells => "integrated over a volume",
         domain::Kind::Edges | domain::Kind::Contact => "integrated over an area",
         domain::Kind::Ends => "at points",
-    }
-}
-
-/// `a Force`, `an Energy`, `a Force/Area`.
-fn described(dimension: Dimension) -> String {
-    let text = unit::type_text(&Type::Value(Shape::Scalar, dimension));
-    let article = if text.starts_with(['A', 'E', 'I', 'O', 'U']) { "an" } else { "a" };
-    format!("{article} {text}")
-}
-
-/// The first parameter or `let` with a dimension in a product.
-fn leading_total(e: &Expr) -> Option<&Expr> {
-    match &e.kind {
-        ExprKind::Param(_) | ExprKind::Let(_) | ExprKind::State(_) => value(&e.ty)
-            .filter(|(shape, dimension)| *shape == Shape::Scalar && !dimension.is_number())
-            .map(|_| e),
-        ExprKind::Negate(a) => leading_total(a),
-        ExprKind::Arithmetic(crate::model::Arithmetic::Mul, a, b) => {
-            leading_total(a).or_else(|| leading_total(b))
-        }
-        ExprKind::Arithmetic(crate::model::Arithmetic::Div, a, _) => leading_total(a),
-        _ => None,
     }
 }

@@ -160,6 +160,7 @@ impl Checker<'_> {
                 )
                 .help_did_you_mean(&name, blocks.iter().copied())
                 .help(format!("the blocks are `{}`", blocks.join("`, `")));
+                let diagnostic = self.was_dropped(&name, diagnostic);
                 return Err(self.report(diagnostic));
             }
         };

@@ -135,6 +135,7 @@ impl Checker<'_> {
         if let Some(help) = self.missing_unit(a, b).or_else(|| self.missing_unit(b, a)) {
             diagnostic = diagnostic.help(help);
         }
+        let diagnostic = self.replaced_parts(b, self.replaced_parts(a, diagnostic));
         self.report(diagnostic)
     }
 
@@ -296,7 +297,23 @@ impl Checker<'_> {
         if let Some(help) = self.missing_unit(&e, &wanted) {
             diagnostic = diagnostic.help(help);
         }
+        let diagnostic = self.replaced_parts(&e, diagnostic);
         Err(self.report(diagnostic))
+    }
+
+    /// Marks the parameters and `let`s in `e` that a variant of its file has replaced. Variants are read before what they extend.
+    fn replaced_parts(&self, e: &Expr, diagnostic: Diagnostic) -> Diagnostic {
+        let place = match e.kind {
+            ExprKind::Param(id) => Some(self.params[id.0].ast.name.span),
+            ExprKind::Let(id) => self.values.get(id.0).map(|item| item.span),
+            _ => None,
+        };
+        match place.filter(|place| place.source < e.span.source) {
+            Some(place) => diagnostic.label(place, "replaced here"),
+            None => {
+                e.children().into_iter().fold(diagnostic, |so_far, child| self.replaced_parts(child, so_far))
+            }
+        }
     }
 }
 

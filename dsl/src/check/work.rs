@@ -9,33 +9,66 @@ use crate::source::Span;
 use ansatz_units::Dimension;
 use std::collections::{BTreeMap, BTreeSet};
 
+/// For each field the integral of the first statement that gives it virtual work or power, and where it stands.
+pub(super) type Balances = BTreeMap<FieldId, (Dimension, Span)>;
+
+/// Whether an integral is virtual work, or virtual power.
+pub(super) fn is_work(integral: Dimension) -> bool {
+    [energy(), energy() / Dimension::TIME].contains(&integral)
+}
+
+/// A statement that gives a field work where the first one gives it power, or the other way round.
+struct Clash {
+    field: FieldId,
+    /// Integral of the statement and where it stands.
+    this: (Dimension, Span),
+    /// The same of the first one.
+    first: (Dimension, Span),
+}
+
 /// Reports statements of virtual work next to statements of virtual power.
 pub(super) fn check(model: &Model, sink: &mut Sink) {
-    let mut known: BTreeMap<FieldId, (Dimension, Span)> = BTreeMap::new();
+    for Clash { field, this: (work, span), first: (wanted, first) } in compared(model).1 {
+        let name = &model.fields[field.0].name;
+        let message = format!("this cannot be added to what another statement says of `{name}`");
+        sink.push(
+            Diagnostic::error(Code::LoadDimension, span, message)
+                .here(format!("its integral is {}", words(work)))
+                .label(first, format!("the integral of this is {}", words(wanted)))
+                .help("all statements that vary a field are terms of one equation"),
+        );
+    }
+}
+
+/// The balances of a model.
+pub(super) fn balances(model: &Model) -> Balances {
+    compared(model).0
+}
+
+/// The balances, and what does not fit them.
+fn compared(model: &Model) -> (Balances, Vec<Clash>) {
+    let (mut known, mut clashes) = (Balances::new(), Vec::new());
     for statement in model.blocks.iter().flat_map(|block| &block.statements) {
         let Some((fields, work, span)) = varied(model, &statement.kind) else { continue };
-        if ![energy(), energy() / Dimension::TIME].contains(&work) {
+        if !is_work(work) {
             continue;
         }
         for field in fields {
-            let &mut (wanted, first) = known.entry(field).or_insert((work, span));
-            if wanted != work {
-                let name = &model.fields[field.0].name;
-                let message = format!("this cannot be added to what another statement says of `{name}`");
-                sink.push(
-                    Diagnostic::error(Code::LoadDimension, span, message)
-                        .here(format!("its integral is {}", words(work)))
-                        .label(first, format!("the integral of this is {}", words(wanted)))
-                        .help("all statements that vary a field are terms of one equation"),
-                );
+            let first = *known.entry(field).or_insert((work, span));
+            if first.0 != work {
+                clashes.push(Clash { field, this: (work, span), first });
                 break;
             }
         }
     }
+    (known, clashes)
 }
 
 /// The fields that a statement varies, the dimension of its integral, and where it says so.
-fn varied(model: &Model, statement: &StatementKind) -> Option<(BTreeSet<FieldId>, Dimension, Span)> {
+pub(super) fn varied(
+    model: &Model,
+    statement: &StatementKind,
+) -> Option<(BTreeSet<FieldId>, Dimension, Span)> {
     let (of, integrand, place, span, tests) = match statement {
         StatementKind::Energy(density, place) => {
             (density, dimension(density)?, place.as_ref(), density.span, false)
@@ -56,10 +89,10 @@ fn varied(model: &Model, statement: &StatementKind) -> Option<(BTreeSet<FieldId>
     Some((fields, place.map_or(integrand, |place| integrand * measure(place)), span))
 }
 
-fn dimension(e: &Expr) -> Option<Dimension> {
+pub(super) fn dimension(e: &Expr) -> Option<Dimension> {
     if let Type::Value(_, dimension) = e.ty { Some(dimension) } else { None }
 }
 
-fn words(dimension: Dimension) -> String {
+pub(super) fn words(dimension: Dimension) -> String {
     unit::type_text(&Type::Value(Shape::Scalar, dimension))
 }

@@ -62,6 +62,7 @@ codes! {
     NotConstant = "N013", "the value must be known before the run";
     NeedsRun = "N014", "the value belongs to a run or to one time of it";
     BadSetting = "N015", "the setting cannot have this value";
+    Repeated = "N016", "another statement says this already, or says otherwise";
 
     DimensionMismatch = "U101", "both sides need the same dimension";
     NotANumber = "U102", "the function takes a pure number";

@@ -210,6 +210,8 @@ fn drop_item(dropped: &ast::Drop, program: &mut Program, sink: &mut Sink) {
     }
     if count(program) == before {
         nothing_there(dropped.kind, span, Some(&text), program, sink);
+    } else {
+        program.dropped.push(ast::Ident { text, span });
     }
 }
 
@@ -248,7 +250,17 @@ fn nothing_there(word: Keyword, span: Span, name: Option<&str>, program: &mut Pr
     if let Some(kind) = other {
         diagnostic = diagnostic.help(format!("`{name}` is a `{}`", kind.text()));
     }
-    sink.push(diagnostic.help_did_you_mean(name, same.iter().map(String::as_str)));
+    diagnostic = diagnostic.help_did_you_mean(name, same.iter().map(String::as_str));
+    sink.push(diagnostic.help(can_be_changed(word, &same)));
+}
+
+/// What a variant can replace and drop of a kind of items, of which the base has those named.
+fn can_be_changed(word: Keyword, names: &[String]) -> String {
+    let word = word.text();
+    match names {
+        [] => format!("the base has no named `{word}`"),
+        names => format!("the base has `{word} {}`", names.join(&format!("`, `{word} "))),
+    }
 }
 
 /// Every named item of the program and of its geometry.

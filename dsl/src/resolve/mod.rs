@@ -22,6 +22,8 @@ pub struct Program {
     pub imports: Vec<Import>,
     /// Library modules in use, in the order of first use.
     pub modules: Vec<Module>,
+    /// Names of items that a variant has dropped, where it does.
+    pub dropped: Vec<ast::Ident>,
     /// Names that unreadable parts would have declared.
     pub broken: Vec<ast::Ident>,
 }

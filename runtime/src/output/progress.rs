@@ -1,9 +1,10 @@
-//! Progress of a run in the terminal: simulated time, step size, iterations, the first columns of the first table, time left.
+//! Progress of a run in the terminal: simulated time, step size, iterations, the first columns of the first table, time left. An event is told
+//! when it fires first; how often it did, at the end.
 
 use crate::error::Error;
 use crate::generated::{Column, Program};
 use crate::observer::{Fired, Observer, Step};
-use crate::settings::display;
+use crate::settings::{counted, display};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 
@@ -21,6 +22,8 @@ pub struct Progress {
     bar: ProgressBar,
     terminal: bool,
     printed: f64,
+    /// How often each event has fired, and when it did last.
+    firings: Vec<(usize, f64)>,
 }
 
 impl Progress {
@@ -31,7 +34,9 @@ impl Progress {
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }
-        Self { program, span, bar, terminal: std::io::stderr().is_terminal(), printed: f64::NEG_INFINITY }
+        let firings = vec![(0, span.0); program.events.len()];
+        let terminal = std::io::stderr().is_terminal();
+        Self { program, span, bar, terminal, printed: f64::NEG_INFINITY, firings }
     }
 
     fn say(&self, text: &str) {
@@ -55,10 +60,10 @@ impl Observer for Progress {
         let part = (step.time - self.span.0) / (self.span.1 - self.span.0);
         let values = self.values(step.globals);
         let text = format!(
-            "t {}, step {:.2e}, {} iterations, {values}",
+            "t {}, step {:.2e}, {}, {values}",
             self.time(step.time),
             step.size,
-            step.iterations
+            counted(step.iterations, "iteration")
         );
         self.bar.set_position((part * TICKS) as u64);
         self.bar.set_message(text.clone());
@@ -70,6 +75,11 @@ impl Observer for Progress {
     }
 
     fn fired(&mut self, fired: &Fired) -> Result<(), Error> {
+        let (count, last) = &mut self.firings[fired.event];
+        (*count, *last) = (*count + 1, fired.time);
+        if *count > 1 {
+            return Ok(());
+        }
         let event = &self.program.events[fired.event];
         let doc = if event.doc.is_empty() { String::new() } else { format!(": {}", event.doc) };
         self.say(&format!("{} at t = {}{doc}", event.name, self.time(fired.time)));
@@ -80,6 +90,11 @@ impl Observer for Progress {
 
 impl Drop for Progress {
     fn drop(&mut self) {
+        for (event, (count, last)) in self.program.events.iter().zip(&self.firings) {
+            if *count > 1 {
+                self.say(&format!("{} fired {count} times, last at t = {}", event.name, self.time(*last)));
+            }
+        }
         self.bar.finish_and_clear();
     }
 }

@@ -23,16 +23,27 @@ pub struct Run {
     pub equations: usize,
     /// Stored entries of its matrix.
     pub matrix_entries: usize,
-    /// How often moving regions were meshed.
+    /// How often moving regions were meshed, the first time included.
     pub meshings: usize,
     /// Threads that assembled and factored it.
     pub threads: usize,
-    /// Events (name, time) in the order in which they fired.
-    pub events: Vec<(String, f64)>,
+    /// Events in the order in which they fired first.
+    pub events: Vec<Fired>,
     /// Wall-clock time \[s\].
     pub wall_seconds: f64,
     /// Why it ended early.
     pub error: Option<String>,
+}
+
+/// An event that fired in a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fired {
+    /// Index into the program's events.
+    pub event: usize,
+    /// When it fired first [internal units].
+    pub time: f64,
+    /// How often it fired.
+    pub count: usize,
 }
 
 #[derive(Serialize)]
@@ -57,8 +68,11 @@ struct Quantity<'a> {
 #[derive(Serialize)]
 struct Event<'a> {
     name: &'a str,
+    /// When it fired first.
     time: f64,
     unit: &'a str,
+    /// How often it fired.
+    count: usize,
     documentation: &'a str,
     /// The texts of its warnings; absent if it has none.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -79,7 +93,7 @@ struct MeshStatistics {
     nodes: usize,
     smallest_quality: f64,
     mean_quality: f64,
-    /// How often moving regions were meshed, where there are any.
+    /// How often moving regions were meshed, the first time included, where there are any.
     #[serde(skip_serializing_if = "Option::is_none")]
     meshings: Option<usize>,
 }
@@ -117,7 +131,7 @@ pub fn write(
         outcome: &run.outcome,
         error: run.error.as_deref(),
         time: Quantity { value: run.time, unit },
-        events: run.events.iter().map(|(name, time)| event(program, name, *time)).collect(),
+        events: run.events.iter().map(|fired| event(program, *fired)).collect(),
         parameters: program
             .parameters
             .iter()
@@ -152,14 +166,15 @@ pub fn write(
     std::fs::write(path, text + "\n").map_err(|e| super::cannot_write(path, &e))
 }
 
-fn event<'a>(program: &'a Program, name: &'a str, time: f64) -> Event<'a> {
-    let declared = program.events.iter().find(|e| e.name == name);
-    let warnings: Vec<&str> = declared.into_iter().flat_map(super::warnings).collect();
+fn event(program: &Program, Fired { event, time, count }: Fired) -> Event<'_> {
+    let declared = &program.events[event];
+    let warnings: Vec<&str> = super::warnings(declared).collect();
     Event {
-        name,
+        name: declared.name,
         time,
         unit: program.base_units[2],
-        documentation: declared.map_or("", |e| e.doc),
+        count,
+        documentation: declared.doc,
         message: (!warnings.is_empty()).then(|| warnings.join("; ")),
     }
 }

@@ -184,7 +184,8 @@ fn intervals_durations_and_ranges_with_which_no_run_can_start_are_refused() {
     let settings = "param n = 0;\nsolve { time = 0 s .. 1 s;  step = euler(max: 1 ms, min: 1 s); }\n\
         state s: Number = 0 in 2 .. 1;\nphysics rest { dt(s)*(1 s) == 1; }\n\
         event a every n*1 s;\nevent b every -1 s;\nevent c when t > 1 s for -2 s;\n\
-        output { fields on square every 0 s: T;  table \"t.csv\" every 0 s: t;  checkpoint every 1 s/n; }";
+        output { fields on square every 0 s: T;  table \"t.csv\" every 0 s: t;  checkpoint every 1 s/n; }\n\
+        test \"law\" { for x in 0 .. 1 by n { expect x < 2; }  for x in 1 .. 0 by 0.1 { for y in 0 .. x by 1 { expect y < 2; } } }";
     insta::assert_snapshot!("intervals_out_of_range", said(settings));
     let settings = "event a every 0.1 s;  event b every step;  event c when t > 0.1 s for 0 s;\n\
         solve { time = 0 s .. 1 s;  step = euler(max: 1 s, min: 1 s); }\n\

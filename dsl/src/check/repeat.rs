@@ -15,9 +15,10 @@ struct Held<'m> {
     span: Span,
 }
 
-/// A `tie` by the field that it takes from the unknowns.
+/// A `tie` by the field that it takes from the unknowns, and the one that this follows.
 struct Tied<'m> {
     field: FieldId,
+    partner: FieldId,
     domain: &'m Domain,
     span: Span,
 }
@@ -31,7 +32,9 @@ pub(super) fn check(model: &Model, sink: &mut Sink) {
             StatementKind::Hold(field, component, _, domain) => {
                 holds.push(Held { field: *field, component: *component, domain, span });
             }
-            StatementKind::Tie(tie, domain) => ties.push(Tied { field: tie.field, domain, span }),
+            StatementKind::Tie(tie, domain) => {
+                ties.push(Tied { field: tie.field, partner: tie.partner, domain, span });
+            }
             _ => {}
         }
     }
@@ -71,12 +74,12 @@ fn tied_twice(model: &Model, before: &[Tied<'_>], tie: &Tied<'_>, sink: &mut Sin
 fn held_and_tied(model: &Model, holds: &[Held<'_>], tie: &Tied<'_>, sink: &mut Sink) {
     for hold in holds.iter().filter(|hold| hold.field == tie.field) {
         let Some(piece) = model.shared(hold.domain, tie.domain) else { continue };
-        let (name, here) = (&model.fields[tie.field.0].name, words(model, piece));
+        let [name, partner] = [tie.field, tie.partner].map(|field| &model.fields[field.0].name);
+        let here = words(model, piece);
         let message = format!("`{name}` is held and tied on {here}, where the tie wins");
-        sink.push(
-            repeated(hold.span, message, tie.span, "tied here")
-                .help(format!("hold what `{name}` follows, or name in the `hold` only what is not tied")),
-        );
+        sink.push(repeated(hold.span, message, tie.span, "tied here").help(format!(
+            "hold `{partner}`, which `{name}` follows, or name in the `hold` only what is not tied"
+        )));
     }
 }
 

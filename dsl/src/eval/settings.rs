@@ -5,7 +5,7 @@ use crate::check::walk::deep;
 use crate::diagnostic::{Code, Diagnostic, Sink};
 use crate::form::Forms;
 use crate::lower::{Lowering, SymbolKind};
-use crate::model::{Every, Expr, ExprKind, Model, PairId, Piece, Trigger};
+use crate::model::{Check, Every, Expr, ExprKind, Model, PairId, Piece, Trigger, Values};
 use crate::scalar::eval;
 
 /// A setting by name, the values that it can have, and the help where it has another one.
@@ -84,6 +84,7 @@ pub(super) fn check(forms: &mut Forms<'_>, parameters: &[f64], sink: &mut Sink) 
             }
         }
     }
+    model.tests.iter().for_each(|test| check_loops(lowering, parameters, &test.checks, sink));
     for order in orders(model) {
         let (low, high) = (number(lowering, order.low, parameters), number(lowering, order.high, parameters));
         if let (Ok(low), Ok(high)) = (low, high)
@@ -91,6 +92,22 @@ pub(super) fn check(forms: &mut Forms<'_>, parameters: &[f64], sink: &mut Sink) 
         {
             let place = bad(order.high, order.message.into()).label(order.low.span, order.label);
             sink.push(place.help(order.help));
+        }
+    }
+}
+
+/// Reports loops of tests that lead nowhere, so that nothing in them is tested.
+fn check_loops<'m>(lowering: &mut Lowering<'m>, parameters: &[f64], checks: &'m [Check], sink: &mut Sink) {
+    for check in checks {
+        let Check::Each(_, values, inner) = check else { continue };
+        check_loops(lowering, parameters, inner, sink);
+        let Values::Range { from, to, by } = values else { continue };
+        let mut value = |e| number(lowering, e, parameters).unwrap_or(f64::NAN);
+        // What depends on the variable of another loop is not known here.
+        let (way, step) = (value(to) - value(from), value(by));
+        if step == 0.0 || way / step < 0.0 {
+            let message = format!("this loop has no values: steps of {} do not lead to its end", shown(step));
+            sink.push(bad(by, message).label(from.span, "it starts here").label(to.span, "and ends here"));
         }
     }
 }

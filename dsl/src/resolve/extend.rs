@@ -256,9 +256,14 @@ fn nothing_there(word: Keyword, span: Span, name: Option<&str>, program: &mut Pr
 
 /// What a variant can replace and drop of a kind of items, of which the base has those named.
 fn can_be_changed(word: Keyword, names: &[String]) -> String {
+    let unnamed = matches!(
+        word,
+        Keyword::Mesh | Keyword::Solve | Keyword::Output | Keyword::Moving | Keyword::Geometry
+    );
     let word = word.text();
     match names {
-        [] => format!("the base has no named `{word}`"),
+        [] if unnamed => format!("`{word}` has no name: write `replace {word} ..`"),
+        [] => format!("the base has no `{word}`"),
         names => format!("the base has `{word} {}`", names.join(&format!("`, `{word} "))),
     }
 }

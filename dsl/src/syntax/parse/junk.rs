@@ -352,6 +352,12 @@ impl Failure<'_> {
             _ if self.found_text() == "{" && self.expects_expr() => {
                 diagnostic.help("a set `{..}` is no value: it stands only behind `in`")
             }
+            _ if self.rule == Rule::drop => diagnostic
+                .help("write `drop KIND NAME;`, such as `drop physics drag;` or `drop test \"title\";`")
+                .help("blocks without a name and single statements are not dropped but replaced: `replace mesh { .. }`"),
+            _ if self.rule == Rule::event && ["when", "every"].contains(&self.found_text()) => {
+                diagnostic.help("an event is either `every` time or `when` a condition turns true")
+            }
             _ => diagnostic,
         }
     }

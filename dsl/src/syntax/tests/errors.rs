@@ -37,6 +37,7 @@ says! {
     documentation_stands_before_items: "physics p {\n    /// stray\n    energy W on D;\n}\n//! inner\n/** block */ let a = 1;\n/// lost";
     foreign_characters_have_their_spelling: "let a = b && c;\nlet F' = 3;\nlet g = !a;\nlet d = ∇u;";
     expectations_are_listed: "let a = (1 + 2;\nevent e on z;\nfield u: Vector[Length] on solid;\nextend dry;\nlet s = {1, 2};";
+    drops_and_events_show_their_form: "drop physics;\ndrop tie v;\nevent a every 1 s when x > 2 => stop;\nevent b when x > 2 and every 1 s;";
     blocks_do_not_end_with_a_semicolon: "physics p { energy W on D; };\n}";
     nothing_follows_a_quantity_directly: "param a = 3 um^n;\nparam b = 5 min(1, 2);\nparam c = (a) um;\nlet d = x@f(t);";
     numbers_and_exponents_have_limits: "let b = 1e999;\nlet c = 3 [m^1000];\nlet d = 1 [((m^9)^9)^9];";

@@ -80,14 +80,11 @@ pub fn solution(program: &Program, g: &[f64]) -> Result<Solve, Error> {
         let name = event.name;
         match event.trigger {
             Trigger::Every(period) => require(period(g) > 0.0, || {
-                format!(
-                    "the event `{name}` would fire every {}: give a time above 0, or write `every step`",
-                    period(g)
-                )
+                format!("the event `{name}` would fire every {}, which is no time above 0", period(g))
             })?,
             Trigger::When { duration, .. } => require(duration(g) >= 0.0, || {
                 format!(
-                    "the condition of `{name}` would have to last {}: give a time of 0 or more",
+                    "the condition of `{name}` would have to last {}, which is no time of 0 or more",
                     duration(g)
                 )
             })?,
@@ -98,7 +95,7 @@ pub fn solution(program: &Program, g: &[f64]) -> Result<Solve, Error> {
 }
 
 fn require(holds: bool, message: impl Fn() -> String) -> Result<(), Error> {
-    if holds { Ok(()) } else { Err(Error::Model(message() + "; change the parameters that it is made of")) }
+    if holds { Ok(()) } else { Err(Error::Model(message() + "; change what it follows from")) }
 }
 
 /// Splits `NAME=VALUE`.

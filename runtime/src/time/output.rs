@@ -1,7 +1,7 @@
 //! Output during a run: rows of tables and field frames, at steps or at multiples of a time between them.
 //!
-//! Steps do not have to meet output times. A row there is interpolated between the rows at steps, with the same weights for every column, so what
-//! balances at the steps balances in the table; a frame is sampled from interpolated unknowns.
+//! Steps do not have to meet output times. A row there is interpolated between the rows at steps, with the same weights for every column of every
+//! table, so what balances at the steps balances in and across the tables; a frame is sampled from interpolated unknowns.
 
 use super::ImplicitSystem;
 use super::integrator::Point;
@@ -57,7 +57,7 @@ impl Outputs {
         let Some(&end) = record.times().last() else { return Ok(()) };
         for (table, schedule) in self.table_schedules.iter_mut().enumerate() {
             for time in schedule.take(end) {
-                observer.row(table, &row(&self.tables[table], record, time))?;
+                observer.row(table, &row(self.tables, table, record, time))?;
             }
         }
         if !observer.wants_frames() {
@@ -74,7 +74,11 @@ impl Outputs {
     }
 }
 
-/// A table's row at a time [display units].
-fn row(table: &Table, record: &RunRecord, time: f64) -> Vec<f64> {
-    record.interpolate(time, |g| table.columns.iter().map(|c| (c.value)(g) / c.unit_value).collect())
+/// The row of `tables[table]` at a time [display units]. All tables are interpolated together, whichever of them are due.
+fn row(tables: &[Table], table: usize, record: &RunRecord, time: f64) -> Vec<f64> {
+    let width = |tables: &[Table]| tables.iter().map(|t| t.columns.len()).sum::<usize>();
+    let (first, end) = (width(&tables[..table]), width(&tables[..=table]));
+    let columns = || tables.iter().flat_map(|t| t.columns);
+    let all = record.interpolate(time, |g| columns().map(|c| (c.value)(g) / c.unit_value).collect());
+    all.get(first..end).map_or_else(Vec::new, <[f64]>::to_vec)
 }

@@ -6,7 +6,6 @@ use crate::front::{Blocks, Scratch, assemble, eliminate};
 use crate::pattern::{Kind, Pattern};
 use crate::pivot::{Pivots, Threshold};
 use crate::schedule::{Place, Schedule};
-use crate::sweep::Row;
 
 /// Pivots of a scaled matrix below this are rounding errors.
 const ZERO_PIVOT: f64 = 1e-13;
@@ -23,9 +22,8 @@ pub struct Factors {
     sites: Vec<Site>,
     /// Factorisations so far.
     factorisations: usize,
-    /// Right-hand sides in the order of elimination: one, or several side by side.
+    /// Right-hand sides in the order of elimination, the numbers of an equation side by side.
     pub(crate) work: Vec<f64>,
-    pub(crate) rows: Vec<Row>,
 }
 
 /// Memory for the fronts that are eliminated one after the other.
@@ -73,7 +71,6 @@ impl Factors {
             schedule,
             factorisations: 0,
             work: Vec::new(),
-            rows: Vec::new(),
             analysis,
         })
     }

@@ -141,13 +141,16 @@ fn several_right_hand_sides_are_solved_as_one_by_one() {
     {
         let mut solver = Solver::new(pattern(&a, kind), &a.weak()).unwrap();
         solver.factor(&a.values).unwrap();
-        let rhs = noise(11 * a.size());
-        let mut together = rhs.clone();
-        assert!(solver.solve(&mut together).relative_residual <= 1e-12);
-        for (one, b) in together.chunks(a.size()).zip(rhs.chunks(a.size())) {
-            let mut alone = b.to_vec();
-            solver.solve(&mut alone);
-            assert!(difference(one, &alone) < 1e-11);
+        // a pair; a full batch and what is left
+        for count in [2, 11] {
+            let rhs = noise(count * a.size());
+            let mut together = rhs.clone();
+            assert!(solver.solve(&mut together).relative_residual <= 1e-12);
+            for (one, b) in together.chunks(a.size()).zip(rhs.chunks(a.size())) {
+                let mut alone = b.to_vec();
+                solver.solve(&mut alone);
+                assert!(difference(one, &alone) < 1e-11);
+            }
         }
     }
 }

@@ -246,13 +246,14 @@ impl System {
         Ok(None)
     }
 
-    /// Factors the linearised balance; the number of its negative pivots.
+    /// Factors the linearised balance, whose residual is to be solved for first; the number of its negative pivots.
     fn factor(&mut self, balance: &Balance) -> Result<usize, Cause> {
+        let first = negative(&balance.residual);
         let entries = self.pattern.entries();
         let expected = if self.indefinite { Definiteness::Indefinite } else { Definiteness::Positive };
         let factors = self
             .solver
-            .factor_low_rank(&self.values[..entries], balance.products.columns(), expected)
+            .factor_low_rank(&self.values[..entries], balance.products.columns(), expected, &first)
             .map_err(|e| self.matrix_failure(e))?;
         let negative_pivots = factors.negative_pivots.unwrap_or(0);
         self.indefinite = negative_pivots > 0;
@@ -261,7 +262,7 @@ impl System {
 
     /// Direction that the present factors give for a residual.
     fn solve_for(&mut self, residual: &[f64]) -> Result<Vec<f64>, Cause> {
-        let mut direction: Vec<f64> = residual.iter().map(|r| -r).collect();
+        let mut direction = negative(residual);
         let mut border = vec![0.0; self.solver.borders()];
         self.solver.solve(&mut direction, &mut border).map_err(|e| self.matrix_failure(e))?;
         Ok(direction)
@@ -340,6 +341,10 @@ impl System {
         error.terms.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
         error
     }
+}
+
+fn negative(x: &[f64]) -> Vec<f64> {
+    x.iter().map(|x| -x).collect()
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

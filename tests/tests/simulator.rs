@@ -1,5 +1,7 @@
 //! What people do wrong on the command line of a simulator, and what it answers; what a run leaves when it fails.
 
+use ansatz::output::results::Results;
+use ansatz_tests::models::filled_block;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -104,6 +106,39 @@ fn a_run_that_fails_keeps_what_it_has_and_says_why() {
         assert!(list.contains(frame) && out.join(frame).exists(), "{frame}");
     }
     assert!(list.trim_end().ends_with("</VTKFile>"), "the list is complete");
+}
+
+/// Numbers of the pictures of that name in a folder.
+fn pictures(out: &Path, name: &str) -> Vec<String> {
+    let files = fs::read_dir(out).expect("the folder is there").flatten();
+    let names = files.map(|file| file.file_name().to_string_lossy().into_owned());
+    let number = |file: String| {
+        let rest = file.strip_prefix(name)?.strip_prefix('_')?.strip_suffix(".png")?;
+        rest.bytes().all(|b| b.is_ascii_digit()).then(|| rest.to_owned())
+    };
+    let mut numbers: Vec<String> = names.filter_map(number).collect();
+    numbers.sort();
+    numbers
+}
+
+#[test]
+fn every_scalar_has_its_pictures_and_regions_are_drawn_together_where_their_times_meet() {
+    let out = folder("pictures");
+    let program = &filled_block::PROGRAM;
+    let values = ansatz::settings::resolve(program, &[]).expect("valid parameters");
+    let mut simulation = ansatz::Simulation::new(program, &values).expect("a simulation");
+    let mut results = Results::create(&out, program).expect("a folder");
+    simulation.run(&mut results, None).expect("it runs");
+    drop(results);
+    assert_eq!(pictures(&out, "p"), ["00000", "00001", "00002"], "the liquid, every second");
+    assert_eq!(
+        pictures(&out, "fields0_speed").len(),
+        3,
+        "a column of the liquid and the rubber: here the former"
+    );
+    assert_eq!(pictures(&out, "fields1_speed").len(), 5, "the rubber, every half second");
+    assert!(pictures(&out, "speed").is_empty(), "neither hides the other");
+    assert_eq!(pictures(&out, "fields"), ["00000", "00001", "00002"], "both, at the times that they share");
 }
 
 #[test]

@@ -1,13 +1,16 @@
-//! Field frames on disk, written by a thread of their own while the run goes on: a .vtu file each, the .pvd list and a picture.
+//! Field frames on disk, written by a thread of their own while the run goes on: a .vtu file each, the .pvd list, and pictures.
 
-use super::snapshot::{self, Snapshot};
-use super::vtu::{self, Grid, PointData};
+use super::joint::Joint;
+use super::layer::{Layer, scalars};
+use super::snapshot::{self, Shown};
+use super::vtu::{self, Grid};
 use crate::error::Error;
-use crate::generated::{Domain, FrameColumn, Program};
+use crate::generated::{Domain, Frames, Program};
 use crate::mesh::Mesh;
 use crate::observer::Frame;
 use crate::system::{domain_nodes, path_edges, region_cells};
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
@@ -23,14 +26,11 @@ pub struct FrameWriter {
 impl FrameWriter {
     /// Starts the thread; files go to `folder`.
     pub fn start(folder: PathBuf, program: &'static Program, mesh: &Mesh) -> Result<Self, Error> {
-        let grids = program.frames.iter().map(|f| grid(mesh, f.domain)).collect::<Result<Vec<_>, _>>()?;
+        let mut writer = Writer::new(folder, program, mesh)?;
         let (sender, receiver) = sync_channel::<Frame>(WAITING);
         let thread = std::thread::spawn(move || {
-            let mut series = vec![Vec::new(); grids.len()];
-            for frame in receiver {
-                write_frame(&folder, program, &grids, &mut series, &frame)?;
-            }
-            Ok(())
+            receiver.into_iter().try_for_each(|frame| writer.write(frame))?;
+            writer.joint.finish()
         });
         Ok(Self { sender: Some(sender), thread: Some(thread) })
     }
@@ -53,6 +53,63 @@ impl Drop for FrameWriter {
     /// Frames in the queue still reach the disk when a run ends by an error.
     fn drop(&mut self) {
         let _ = self.finish();
+    }
+}
+
+/// What the thread keeps.
+struct Writer {
+    folder: PathBuf,
+    program: &'static Program,
+    /// Grid of each statement on the first mesh.
+    grids: Vec<Arc<Grid>>,
+    /// Time and file of each statement's frames so far.
+    series: Vec<Vec<(f64, String)>>,
+    pictures: Vec<Vec<String>>,
+    joint: Joint,
+}
+
+impl Writer {
+    fn new(folder: PathBuf, program: &'static Program, mesh: &Mesh) -> Result<Self, Error> {
+        let on_mesh = |f: &Frames| grid(mesh, f.domain).map(Arc::new);
+        Ok(Self {
+            grids: program.frames.iter().map(on_mesh).collect::<Result<_, _>>()?,
+            series: vec![Vec::new(); program.frames.len()],
+            pictures: picture_names(program),
+            joint: Joint::new(&folder, program),
+            folder,
+            program,
+        })
+    }
+
+    fn write(&mut self, frame: Frame) -> Result<(), Error> {
+        let domain = self.program.frames[frame.frame].domain;
+        let grid = match &frame.mesh {
+            Some(mesh) => Arc::new(grid(mesh, domain)?),
+            None => self.grids[frame.frame].clone(),
+        };
+        let layer = Layer::new(self.program, grid, &frame);
+        let number = self.series[frame.frame].len();
+        self.store(&frame, &layer)?;
+        let caption = snapshot::at_time(frame.time, self.program.base_units[2]);
+        for column in scalars(&self.program.frames[frame.frame]) {
+            let name = &self.pictures[frame.frame][column];
+            let file = self.folder.join(format!("{name}_{number:05}.png"));
+            snapshot::write(&file, &[Shown { layer: &layer, scalar: Some(column) }], &caption)?;
+        }
+        self.joint.add(frame.frame, frame.time, layer)
+    }
+
+    /// Writes the file of a frame and the list of all.
+    fn store(&mut self, frame: &Frame, layer: &Layer) -> Result<(), Error> {
+        let stem = match self.grids.len() {
+            1 => String::from("fields"),
+            _ => format!("fields{}", frame.frame),
+        };
+        let series = &mut self.series[frame.frame];
+        let file = format!("{stem}_{:05}.vtu", series.len());
+        vtu::write(&self.folder.join(&file), &layer.grid, &layer.data)?;
+        series.push((frame.time, file));
+        vtu::write_series(&self.folder.join(format!("{stem}.pvd")), series)
     }
 }
 
@@ -79,70 +136,13 @@ fn grid(mesh: &Mesh, domain: Domain) -> Result<Grid, Error> {
     Ok(grid)
 }
 
-fn write_frame(
-    folder: &std::path::Path,
-    program: &Program,
-    grids: &[Grid],
-    series: &mut [Vec<(f64, String)>],
-    frame: &Frame,
-) -> Result<(), Error> {
-    let frames = &program.frames[frame.frame];
-    let present = frame.mesh.as_ref().map(|mesh| grid(mesh, frames.domain)).transpose()?;
-    let grid = present.as_ref().unwrap_or(&grids[frame.frame]);
-    let stem = if grids.len() == 1 { String::from("fields") } else { format!("fields{}", frame.frame) };
-    let number = series[frame.frame].len();
-    let file = format!("{stem}_{number:05}.vtu");
-    let data: Vec<PointData> = frames
-        .columns
-        .iter()
-        .zip(&frame.columns)
-        .map(|(column, values)| PointData {
-            name: format!("{} [{}]", column.name, column.unit),
-            components: column.components,
-            values: in_plane(program, column, values),
-        })
-        .collect();
-    vtu::write(&folder.join(&file), grid, &data)?;
-    series[frame.frame].push((frame.time, file));
-    vtu::write_series(&folder.join(format!("{stem}.pvd")), &series[frame.frame])?;
-    let is_displacement = |c: &FrameColumn| c.components == 3 && c.unit == program.base_units[0];
-    let moved = frames.columns.iter().position(is_displacement);
-    let shown = frames.columns.iter().position(|c| c.components == 1);
-    let Some(shown) = shown else { return Ok(()) };
-    let vectors = |k: usize| data[k].values.chunks(3).map(|v| [v[0], v[1]]);
-    let displacement: Vec<[f64; 2]> = match moved {
-        Some(k) => vectors(k).map(|u| u.map(|x| x * frames.columns[k].unit_value)).collect(),
-        None => vec![[0.0; 2]; grid.points.len()],
+/// Names of the pictures of each statement's columns; with the statement's number before those that another statement has too.
+fn picture_names(program: &Program) -> Vec<Vec<String>> {
+    let holders =
+        |name: &str| program.frames.iter().filter(|f| f.columns.iter().any(|c| c.name == name)).count();
+    let picture = |frame: usize, name: &str| {
+        if holders(name) > 1 { format!("fields{frame}_{name}") } else { String::from(name) }
     };
-    let drawn = frames.columns.iter().position(|c| c.components == 3 && !is_displacement(c));
-    let arrows: Vec<[f64; 2]> = drawn.map_or_else(Vec::new, |k| vectors(k).collect());
-    let picture = folder.join(format!("{}_{number:05}.png", frames.columns[shown].name));
-    let about = drawn.map_or_else(String::new, |k| format!(", arrows: {}", frames.columns[k].name));
-    let caption = format!("t = {:.2} {}{about}", frame.time, program.base_units[2]);
-    let title = &data[shown].name;
-    snapshot::write(
-        &picture,
-        &Snapshot {
-            grid,
-            displacement: &displacement,
-            values: &data[shown].values,
-            arrows: &arrows,
-            title,
-            caption: &caption,
-        },
-    )
-}
-
-/// Display values with vectors and tensors turned from the model's frame into that of the file: in-plane x and y first.
-fn in_plane(program: &Program, column: &FrameColumn, values: &[f64]) -> Vec<f64> {
-    let order = if program.axisymmetric { [0, 2, 1] } else { [0, 1, 2] };
-    let shown = |v: f64| v / column.unit_value;
-    match column.components {
-        3 => values.chunks(3).flat_map(|v| order.map(|i| shown(v[i]))).collect(),
-        9 => values
-            .chunks(9)
-            .flat_map(|v| order.into_iter().flat_map(move |i| order.map(|j| shown(v[3 * i + j]))))
-            .collect(),
-        _ => values.iter().map(|v| shown(*v)).collect(),
-    }
+    let of_frames = |(k, f): (usize, &Frames)| f.columns.iter().map(|c| picture(k, c.name)).collect();
+    program.frames.iter().enumerate().map(of_frames).collect()
 }

@@ -4,6 +4,8 @@
 mod arrows;
 mod canvas;
 mod frames;
+mod joint;
+mod layer;
 mod plot;
 mod snapshot;
 mod table;

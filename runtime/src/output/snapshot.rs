@@ -1,7 +1,8 @@
-//! Pictures of the deformed bodies coloured by one scalar, with a colour bar, and with arrows for a vector.
+//! Pictures of deformed bodies and of what is between them, coloured by scalars with a colour bar each, and with arrows for vectors.
 
 use super::arrows;
 use super::canvas::{Canvas, Rgb};
+use super::layer::Layer;
 use super::vtu::Grid;
 use crate::error::Error;
 use std::collections::BTreeMap;
@@ -16,50 +17,70 @@ const BAR: f64 = 110.0;
 const BAR_HEIGHT: f64 = 300.0;
 const INK: Rgb = [30; 3];
 
-/// What to draw.
-pub struct Snapshot<'a> {
-    /// Reference grid.
-    pub grid: &'a Grid,
-    /// In-plane displacement of each node.
-    pub displacement: &'a [[f64; 2]],
-    /// Value of each node.
-    pub values: &'a [f64],
-    /// In-plane vector of each node, drawn as an arrow; empty for none.
-    pub arrows: &'a [[f64; 2]],
-    /// Title, such as `strain_zz [1]`.
-    pub title: &'a str,
-    /// Second line, such as `t = 85 s`.
-    pub caption: &'a str,
+/// A layer and the number of its column that gives the colours; without one, a path is a line in ink.
+#[derive(Clone, Copy)]
+pub struct Shown<'a> {
+    /// What to draw.
+    pub layer: &'a Layer,
+    /// Column of scalars.
+    pub scalar: Option<usize>,
 }
 
-/// Draws and writes a PNG.
-pub fn write(path: &Path, snapshot: &Snapshot<'_>) -> Result<(), Error> {
-    let position = |n: u32| {
-        let (p, u) = (snapshot.grid.points[n as usize], snapshot.displacement[n as usize]);
-        [p[0] + u[0], p[1] + u[1]]
-    };
-    let view = View::new(snapshot.grid, position);
+impl Shown<'_> {
+    fn values(&self) -> Option<&[f64]> {
+        self.scalar.map(|k| &self.layer.data[k].values[..])
+    }
+
+    fn title(&self) -> Option<&str> {
+        self.scalar.map(|k| &self.layer.data[k].name[..])
+    }
+}
+
+/// The caption of a picture.
+pub fn at_time(time: f64, unit: &str) -> String {
+    format!("t = {time:.2} {unit}")
+}
+
+/// Draws layers over each other and writes a PNG.
+pub fn write(path: &Path, layers: &[Shown<'_>], caption: &str) -> Result<(), Error> {
+    let view = View::new(layers);
     let mut canvas = Canvas::new(PICTURE[0], view.height());
-    let range = Range::of(snapshot.values);
-    for cell in &snapshot.grid.cells {
-        let corners = cell.map(|n| view.pixel(position(n)));
-        let values = cell.map(|n| snapshot.values[n as usize]);
-        draw_cell(&mut canvas, corners, values, &range);
+    let ranges: Vec<_> = layers.iter().map(|shown| shown.values().map(Range::of)).collect();
+    for (shown, range) in layers.iter().zip(&ranges) {
+        draw_layer(&mut canvas, &view, shown, range.as_ref());
     }
-    for edge in outline(snapshot.grid) {
-        draw_edge(&mut canvas, edge.map(|n| view.pixel(position(n))));
+    let titles: Vec<&str> = layers.iter().filter_map(Shown::title).collect();
+    let bars: Vec<_> = ranges.iter().flatten().zip(&titles).collect();
+    let slot = (view.height() as f64 - 2.0 * MARGIN) / bars.len().max(1) as f64;
+    for (k, (range, title)) in bars.into_iter().enumerate() {
+        draw_bar(&mut canvas, [MARGIN + k as f64 * slot, slot], range, (titles.len() > 1).then_some(title));
     }
-    for edge in &snapshot.grid.edges {
-        let values = edge.map(|n| snapshot.values[n as usize]);
-        draw_curve(&mut canvas, edge.map(|n| view.pixel(position(n))), values, &range);
-    }
-    let arrows: Vec<_> =
-        snapshot.arrows.iter().zip(0..).map(|(&arrow, n)| (view.pixel(position(n)), arrow)).collect();
-    arrows::draw(&mut canvas, &arrows, INK);
-    draw_bar(&mut canvas, &range);
-    canvas.text([MARGIN, 10.0], snapshot.title, INK);
-    canvas.text([MARGIN, 24.0], snapshot.caption, INK);
+    let arrows = layers.iter().filter_map(|shown| shown.layer.arrows).map(|name| format!(", arrows: {name}"));
+    canvas.text([MARGIN, 10.0], &titles.join(", "), INK);
+    canvas.text([MARGIN, 24.0], &format!("{caption}{}", arrows.collect::<String>()), INK);
     canvas.write(path)
+}
+
+fn draw_layer(canvas: &mut Canvas, view: &View, shown: &Shown<'_>, range: Option<&Range>) {
+    let (layer, grid) = (shown.layer, &shown.layer.grid);
+    let pixel = |n: u32| view.pixel(layer.position(n));
+    let coloured = shown.values().zip(range);
+    if let Some((values, range)) = coloured {
+        for cell in &grid.cells {
+            draw_cell(canvas, cell.map(pixel), cell.map(|n| values[n as usize]), range);
+        }
+    }
+    for edge in outline(grid) {
+        draw_edge(canvas, edge.map(pixel));
+    }
+    for edge in &grid.edges {
+        let colour = |s: f64| {
+            coloured.map_or(INK, |(values, range)| range.colour(on_edge(edge.map(|n| values[n as usize]), s)))
+        };
+        draw_curve(canvas, edge.map(pixel), colour);
+    }
+    let arrows: Vec<_> = layer.vectors.iter().zip(0..).map(|(&arrow, n)| (pixel(n), arrow)).collect();
+    arrows::draw(canvas, &arrows, INK);
 }
 
 /// Maps model coordinates to pixels. The frame holds the body before and after its deformation: a series of pictures keeps it until the body leaves it.
@@ -70,10 +91,14 @@ struct View {
 }
 
 impl View {
-    fn new(grid: &Grid, position: impl Fn(u32) -> [f64; 2]) -> Self {
+    fn new(layers: &[Shown<'_>]) -> Self {
+        let ends = |layer: &Layer| {
+            let both = |n: usize| [layer.grid.points[n], layer.position(n as u32)];
+            (0..layer.grid.points.len()).flat_map(both).collect::<Vec<_>>()
+        };
+        let points: Vec<[f64; 2]> = layers.iter().flat_map(|shown| ends(shown.layer)).collect();
         let bound = |axis: usize, best: fn(f64, f64) -> f64, start: f64| {
-            let both = |(n, p): (usize, &[f64; 2])| best(p[axis], position(n as u32)[axis]);
-            grid.points.iter().enumerate().map(both).fold(start, best)
+            points.iter().map(|p| p[axis]).fold(start, best)
         };
         let low = [0, 1].map(|a| bound(a, f64::min, f64::INFINITY));
         let high = [0, 1].map(|a| bound(a, f64::max, f64::NEG_INFINITY));
@@ -188,11 +213,11 @@ fn draw_edge(canvas: &mut Canvas, nodes: [[f64; 2]; 3]) {
     }
 }
 
-/// An edge of a curve, which has no cells to show its values.
-fn draw_curve(canvas: &mut Canvas, nodes: [[f64; 2]; 3], values: [f64; 3], range: &Range) {
+/// An edge of a curve, which has no cells to show its values: colours from its start at 0 to its end at 1.
+fn draw_curve(canvas: &mut Canvas, nodes: [[f64; 2]; 3], colour: impl Fn(f64) -> Rgb) {
     for k in 0..PARTS {
         let [from, to] = [k, k + 1].map(|k| edge_point(nodes, k as f64 / PARTS as f64));
-        let colour = range.colour(on_edge(values, (k as f64 + 0.5) / PARTS as f64));
+        let colour = colour((k as f64 + 0.5) / PARTS as f64);
         for shift in [-1.0, 0.0, 1.0] {
             canvas.line([from[0] + shift, from[1]], [to[0] + shift, to[1]], colour);
             canvas.line([from[0], from[1] + shift], [to[0], to[1] + shift], colour);
@@ -200,8 +225,9 @@ fn draw_curve(canvas: &mut Canvas, nodes: [[f64; 2]; 3], values: [f64; 3], range
     }
 }
 
-fn draw_bar(canvas: &mut Canvas, range: &Range) {
-    let (x, top, height) = (PICTURE[0] as f64 - BAR + 10.0, MARGIN + 40.0, BAR_HEIGHT);
+/// The bar of a range, in the slot from the pixel `top` on; with a title where there are several.
+fn draw_bar(canvas: &mut Canvas, [top, slot]: [f64; 2], range: &Range, title: Option<&str>) {
+    let (x, top, height) = (PICTURE[0] as f64 - BAR + 10.0, top + 40.0, BAR_HEIGHT.min(slot - 60.0));
     let rows = 150;
     for k in 0..rows {
         let s = 1.0 - k as f64 / (rows - 1) as f64;
@@ -213,6 +239,10 @@ fn draw_bar(canvas: &mut Canvas, range: &Range) {
         let s = k as f64 / 4.0;
         let value = range.low + s * (range.high - range.low);
         canvas.text([x + 24.0, top + (1.0 - s) * height - 4.0], &short(value), INK);
+    }
+    if let Some(title) = title {
+        let left = PICTURE[0] as f64 - 8.0 * title.chars().count() as f64 - 4.0;
+        canvas.text([left.min(x), top - 22.0], title, INK);
     }
 }
 

@@ -46,7 +46,7 @@ impl Outputs {
         })
     }
 
-    /// Writes what is due up to the last recorded point. `point` gives unknowns and rates at a time inside the last step.
+    /// Writes what is due up to the last recorded point, frames in the order of their times. `point` gives unknowns and rates at a time inside the last step.
     pub fn emit(
         &mut self,
         system: &mut dyn ImplicitSystem,
@@ -63,12 +63,15 @@ impl Outputs {
         if !observer.wants_frames() {
             return Ok(());
         }
-        for (frame, schedule) in self.frame_schedules.iter_mut().enumerate() {
-            for time in schedule.take(end) {
-                let columns = system.sample(frame, &point(time), &record.at(time));
-                let mesh = system.present_mesh();
-                observer.frame(Frame { frame, time, columns, mesh })?;
-            }
+        let schedules = self.frame_schedules.iter_mut().enumerate();
+        let mut due: Vec<(f64, usize)> = schedules
+            .flat_map(|(k, schedule)| schedule.take(end).into_iter().map(move |time| (time, k)))
+            .collect();
+        due.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (time, frame) in due {
+            let columns = system.sample(frame, &point(time), &record.at(time));
+            let mesh = system.present_mesh();
+            observer.frame(Frame { frame, time, columns, mesh })?;
         }
         Ok(())
     }

@@ -35,8 +35,8 @@ impl Canvas {
     /// Fills a triangle; `colour` maps the linearly interpolated value.
     pub fn triangle(&mut self, corners: [[f64; 2]; 3], values: [f64; 3], colour: impl Fn(f64) -> Rgb) {
         let p = corners.map(|c| c.map(|v| v * FINE as f64 - 0.5));
-        let area = cross(p[0], p[1], p[2]);
-        if area == 0.0 || !area.is_finite() {
+        let per_area = cross(p[0], p[1], p[2]).recip();
+        if !per_area.is_finite() {
             return;
         }
         let bound = |axis: usize, size: usize| {
@@ -49,7 +49,7 @@ impl Canvas {
             for x in x0..=x1 {
                 let q = [x as f64, y as f64];
                 let l =
-                    [cross(p[1], p[2], q) / area, cross(p[2], p[0], q) / area, cross(p[0], p[1], q) / area];
+                    [cross(p[1], p[2], q), cross(p[2], p[0], q), cross(p[0], p[1], q)].map(|l| l * per_area);
                 if l.iter().all(|&l| l >= -1e-9) {
                     self.set(x, y, colour(l[0] * values[0] + l[1] * values[1] + l[2] * values[2]));
                 }

@@ -16,6 +16,8 @@ const MARGIN: f64 = 40.0;
 const BAR: f64 = 110.0;
 const BAR_HEIGHT: f64 = 300.0;
 const INK: Rgb = [30; 3];
+/// Steps of a bar of colours.
+const COLOURS: usize = 256;
 
 /// A layer and the number of its column that gives the colours; without one, a path is a line in ink.
 #[derive(Clone, Copy)]
@@ -122,6 +124,8 @@ impl View {
 struct Range {
     low: f64,
     high: f64,
+    /// From the lowest value to the highest.
+    colours: Vec<Rgb>,
 }
 
 impl Range {
@@ -134,20 +138,25 @@ impl Range {
         let (low, high) = (at(0.005), at(0.995));
         let (low, high) =
             if low < 0.0 && high > 0.0 { (-high.max(-low), high.max(-low)) } else { (low, high) };
-        if high - low > 1e-12 {
-            Self { low, high }
-        } else {
-            Self { low: low - 0.5e-12, high: high + 0.5e-12 }
-        }
+        let constant = if high - low > 1e-12 { 0.0 } else { 0.5e-12 };
+        Self { low: low - constant, high: high + constant, colours: colours(low < 0.0 && high > 0.0) }
     }
 
     fn colour(&self, value: f64) -> Rgb {
         let s = ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0);
-        let both_signs = self.low < 0.0 && self.high > 0.0;
-        let gradient = if both_signs { colorous::RED_BLUE } else { colorous::VIRIDIS };
-        let c = gradient.eval_continuous(if both_signs { 1.0 - s } else { s });
-        [c.r, c.g, c.b]
+        self.colours[((s * COLOURS as f64) as usize).min(COLOURS - 1)]
     }
+}
+
+/// Blue over white to red for values of both signs, else dark to bright.
+fn colours(both_signs: bool) -> Vec<Rgb> {
+    let gradient = if both_signs { colorous::RED_BLUE } else { colorous::VIRIDIS };
+    let colour = |k: usize| {
+        let k = if both_signs { COLOURS - 1 - k } else { k };
+        let colour = gradient.eval_rational(k, COLOURS);
+        [colour.r, colour.g, colour.b]
+    };
+    (0..COLOURS).map(colour).collect()
 }
 
 /// Quadratic basis of the 6-node triangle at barycentric coordinates.

@@ -12,6 +12,7 @@ use crate::time::run::{Plan, run};
 use crate::time::{Group, ImplicitSystem, Stage};
 use ansatz_geometry::Geometry;
 use std::num::NonZeroUsize;
+use std::ops::Range;
 use std::rc::Rc;
 
 #[cfg(test)]
@@ -175,6 +176,13 @@ impl ImplicitSystem for Discretised {
         let first = unknowns.states;
         let state = |(k, &tested): (usize, &bool)| Group { range: first + k..first + k + 1, tested };
         fields.chain(differential.iter().enumerate().map(state)).collect()
+    }
+
+    fn algebraic(&self) -> Vec<Range<usize>> {
+        let unknowns = &self.system.unknowns;
+        let fields = unknowns.fields.iter().zip(self.system.program.fields);
+        let follow = fields.filter(|(_, field)| !field.differential);
+        follow.map(|(numbers, _)| numbers.first..numbers.first + numbers.count()).collect()
     }
 
     fn solve_stage(&mut self, stage: &Stage<'_>, y: &mut [f64]) -> Result<usize, SolveError> {

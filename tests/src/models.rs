@@ -21,11 +21,12 @@ ansatz::include_model!("../models/turek_csm1.ansatz");
 ansatz::include_model!("../models/filled_block.ansatz");
 ansatz::include_model!("../models/refreshed_block.ansatz");
 ansatz::include_model!("../models/sheet.ansatz");
+ansatz::include_model!("../models/squashed_at_once.ansatz");
 
 use ansatz::generated::Program;
 
 /// All of them.
-pub static PROGRAMS: [&Program; 21] = [
+pub static PROGRAMS: [&Program; 22] = [
     &patch_plane::PROGRAM,
     &patch_axi::PROGRAM,
     &crushed::PROGRAM,
@@ -47,4 +48,5 @@ pub static PROGRAMS: [&Program; 21] = [
     &filled_block::PROGRAM,
     &refreshed_block::PROGRAM,
     &sheet::PROGRAM,
+    &squashed_at_once::PROGRAM,
 ];

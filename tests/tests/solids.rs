@@ -1,7 +1,7 @@
 //! What must hold for any elastic solid, on unstructured meshes and from the law to the solution.
 
 use ansatz::generated::{BATCH, Integral, Kernel, Program, Row};
-use ansatz_tests::models::{named_axis, patch_axi, patch_plane, turek_csm1};
+use ansatz_tests::models::{named_axis, patch_axi, patch_plane, squashed_at_once, turek_csm1};
 use ansatz_tests::notes::Notes;
 use ansatz_tests::sample::{Elements, Random, globals};
 
@@ -22,6 +22,22 @@ fn a_uniform_deformation_of_the_boundary_goes_on_inside() {
     assert!(plane < 1e-12, "{plane:e}");
     let axisymmetric = deviation(&patch_axi::PROGRAM, &patch_axi::Parameters::default().values());
     assert!(axisymmetric < 1e-12, "{axisymmetric:e}");
+}
+
+// 3 mm at once turn the cells below the plate inside out: the first instant is reached along a ramp.
+#[test]
+fn what_is_held_from_the_start_is_in_equilibrium_in_the_first_row() {
+    for d in ["0.5 mm", "3 mm"] {
+        let program = &squashed_at_once::PROGRAM;
+        let values = ansatz::settings::resolve(program, &[("d".into(), d.into())]).expect("in range");
+        let mut simulation = ansatz::Simulation::new(program, &values).expect("the model can be built");
+        let mut notes = Notes::default();
+        simulation.run(&mut notes, None).expect("the run reaches its end");
+        let [(_, first), .., (_, last)] = &notes.rows[..] else { panic!("{} rows", notes.rows.len()) };
+        for (first, last) in first.iter().zip(last) {
+            assert!(*last > 0.1 && (first / last - 1.0).abs() < 1e-7, "{first} at first, {last} in the end");
+        }
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::control::{Control, Verdict, milne_factor};
 use super::history::{History, blend, interpolation_weights};
 use super::integrator::{Point, Tableau, advance, tableau};
 use super::magnitude::Magnitudes;
-use super::{Group, ImplicitSystem};
+use super::{Group, ImplicitSystem, Stage};
 use crate::error::SolveError;
 use crate::generated::{Integrator, Solve};
 use crate::system::Transfer;
@@ -171,17 +171,18 @@ impl March {
     }
 }
 
-/// A start with its rates, measured by a tiny step.
+/// A start with its rates, measured by a tiny step, and algebraic unknowns that belong to it.
 fn with_rates(
     system: &mut dyn ImplicitSystem,
     settings: Solve,
     time: f64,
-    values: Vec<f64>,
+    mut values: Vec<f64>,
     iterations: &mut usize,
 ) -> Result<Point, SolveError> {
+    let mut size = (TRIAL * settings.max_step).max(settings.min_step);
+    make_consistent(system, time, size, &mut values, iterations)?;
     let start = Point { time, rates: vec![0.0; values.len()], values };
     let euler = tableau(Integrator::BackwardEuler);
-    let mut size = (TRIAL * settings.max_step).max(settings.min_step);
     loop {
         match advance(euler, system, &start, size, |_| start.values.clone(), iterations) {
             Ok(end) => return Ok(Point { rates: end.rates, ..start }),
@@ -189,6 +190,33 @@ fn with_rates(
                 return Err(SolveError { time, step: size, ..error });
             }
             Err(_) => size *= 0.5,
+        }
+    }
+}
+
+/// Solves for what follows from the other unknowns at a start, these as they are there up to what changes in a step of `size`. Where that fails all
+/// stay as they are: the first step is a shorter way to a solution, or tells what is wrong.
+fn make_consistent(
+    system: &mut dyn ImplicitSystem,
+    time: f64,
+    size: f64,
+    values: &mut [f64],
+    iterations: &mut usize,
+) -> Result<(), SolveError> {
+    let algebraic = system.algebraic();
+    if algebraic.is_empty() {
+        return Ok(());
+    }
+    let mut solved = values.to_vec();
+    match system.solve_stage(&Stage { time, alpha: 1.0 / size, base: values }, &mut solved) {
+        Ok(taken) => {
+            *iterations += taken;
+            algebraic.into_iter().for_each(|range| values[range.clone()].copy_from_slice(&solved[range]));
+            system.set_states(time, values, &[])
+        }
+        Err(error) => {
+            *iterations += error.iterations;
+            Ok(())
         }
     }
 }

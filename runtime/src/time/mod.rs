@@ -55,11 +55,15 @@ pub trait ImplicitSystem {
     /// The kinds of unknowns.
     fn groups(&self) -> Vec<Group>;
 
+    /// Places in y of what follows from the other unknowns at any instant, since its rates do not occur in the equations, and is not brought in line
+    /// with them by [`Self::set_states`].
+    fn algebraic(&self) -> Vec<Range<usize>>;
+
     /// Solves for y at a stage; `y` is the prediction on entry and the solution on return. Returns the Newton iterations it took.
     /// After an error the contents of `y` mean nothing.
     fn solve_stage(&mut self, stage: &Stage<'_>, y: &mut [f64]) -> Result<usize, SolveError>;
 
-    /// Gives states (by number) new values and makes `y` consistent with them at `time`.
+    /// Gives states (by number) new values and makes `y` consistent with them and with the fields at `time`.
     fn set_states(&mut self, time: f64, y: &mut [f64], values: &[(usize, f64)]) -> Result<(), SolveError>;
 
     /// Prepares the step after an accepted point; with new meshes of moving regions if they are asked for `anew`. How unknowns go along, where they

@@ -10,6 +10,7 @@ use crate::error::{Cause, Error, SolveError};
 use crate::generated::{Action, Column, Event, Every, Integrator, Record, Solve, Table, Trigger};
 use crate::observer::{Fired, Observer, Step};
 use crate::record::{End, RunRecord};
+use std::ops::Range;
 
 /// F(t, y, y') as a plain function, solved by Newton's method with differences for the Jacobian. Globals are (t, y, y').
 struct Small {
@@ -71,6 +72,10 @@ impl ImplicitSystem for Small {
     fn groups(&self) -> Vec<Group> {
         let group = |(i, &tested): (usize, &bool)| Group { range: i..i + 1, tested };
         self.differential.iter().enumerate().map(group).collect()
+    }
+
+    fn algebraic(&self) -> Vec<Range<usize>> {
+        (0..self.differential.len()).filter(|&i| !self.differential[i]).map(|i| i..i + 1).collect()
     }
 
     fn solve_stage(&mut self, stage: &Stage<'_>, y: &mut [f64]) -> Result<usize, SolveError> {

@@ -4,7 +4,7 @@ use crate::files::{compile_file, model_file};
 use crate::project::{self, Machine};
 use ansatz_dsl::compile::{Compilation, Output};
 use ansatz_dsl::diagnostic::{Style, render_with};
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
@@ -58,7 +58,11 @@ pub fn build(model: &Path, to: &Path) -> Outcome {
 pub fn test(model: &Path, arguments: &[String]) -> Outcome {
     let compilation = compile_file(model)?;
     let output = output(&compilation)?;
-    say(&output.law_tests.text);
+    if output.law_tests.text.is_empty() && !output.has_run_tests {
+        say(&format!("no tests in {}", output.name));
+    } else {
+        say(&output.law_tests.text);
+    }
     if output.law_tests.failed > 0 {
         return Ok(ExitCode::FAILURE);
     }
@@ -81,7 +85,7 @@ fn output(compilation: &Compilation) -> Result<&Output, String> {
     let report = render_with(&compilation.diagnostics, &compilation.sources, style);
     match &compilation.output {
         Some(output) => {
-            eprint!("{report}");
+            complain(&report);
             Ok(output)
         }
         None => Err(report),
@@ -96,8 +100,12 @@ fn fingerprint(text: &str) -> String {
     format!("{:08x}", hash >> 32)
 }
 
+/// Writes to standard error, as it is; where nobody reads that, nothing is lost.
+pub fn complain(text: &str) {
+    let _ = write!(std::io::stderr(), "{text}");
+}
+
 fn say(text: &str) {
-    use std::io::Write;
     // A reader that went away, as in `ansatz expand | head`, is no error.
     let _ = writeln!(std::io::stdout(), "{text}");
 }

@@ -72,7 +72,7 @@ fn main() -> ExitCode {
         Command::Test { model, arguments } => commands::test(&model, &arguments),
     };
     outcome.unwrap_or_else(|message| {
-        eprintln!("{message}");
+        commands::complain(&format!("{message}\n"));
         ExitCode::FAILURE
     })
 }

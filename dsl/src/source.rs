@@ -96,6 +96,9 @@ impl Source {
     }
 }
 
+/// What some editors write before a text in UTF-8.
+const BYTE_ORDER_MARK: char = '\u{feff}';
+
 /// Every text of one compilation, in the order in which they were read.
 #[derive(Clone, Debug, Default)]
 pub struct SourceMap {
@@ -108,10 +111,14 @@ impl SourceMap {
         Self::default()
     }
 
-    /// Adds a text and gives it the next number. Numbers past `u16::MAX` all fall on the last one.
+    /// Adds a text, without the byte order mark that some editors put first, and gives it the next number. Numbers past `u16::MAX` all fall on the last one.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> SourceId {
         let id = SourceId(u16::try_from(self.sources.len()).unwrap_or(u16::MAX));
-        self.sources.push(Source { id, name: name.into(), text: text.into() });
+        let mut text: String = text.into();
+        if text.starts_with(BYTE_ORDER_MARK) {
+            text.remove(0);
+        }
+        self.sources.push(Source { id, name: name.into(), text });
         id
     }
 

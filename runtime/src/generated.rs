@@ -12,6 +12,7 @@ pub use ansatz_geometry::{Geometry, GeometryError, LoopPart, PathBuilder, Region
 pub use crate::error::Error;
 pub use crate::lane::{BATCH, Lane, Row, Simd, rows, rows_mut};
 pub use crate::mesh::{MeshSizing, Place, SizeRule};
+pub use crate::settings::{named_step, whole};
 pub use crate::simulation::Simulation;
 pub use crate::simulator::main;
 pub use crate::vectorize;

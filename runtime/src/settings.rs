@@ -70,12 +70,15 @@ pub fn solution(program: &Program, g: &[f64]) -> Result<Solve, Error> {
         return Err(Error::Model(String::from("the time of a run must end after it starts")));
     }
     // What the model does not name is infinite, or zero.
-    require(solve.max_step > 0.0, || format!("`max: {}` in `step` is no time above 0", solve.max_step))?;
-    require(solve.min_step >= 0.0, || format!("`min: {}` in `step` is no time above 0", solve.min_step))?;
+    let step = |name, size| format!("`{name}: {size}` in `step` is no finite time above 0");
+    require(solve.max_step > 0.0, || step("max", solve.max_step))?;
+    require(solve.min_step >= 0.0, || step("min", solve.min_step))?;
     for tolerance in [solve.step_tolerance, solve.newton_tolerance] {
         require(tolerance > 0.0, || format!("`tolerance: {tolerance}` is not above 0"))?;
     }
-    require(solve.newton_iterations > 0, || String::from("`iterations` in `newton` is below 1"))?;
+    require(solve.newton_iterations > 0, || {
+        String::from("`iterations` in `newton` is no whole number above 0")
+    })?;
     for event in program.events {
         let name = event.name;
         match event.trigger {
@@ -92,6 +95,21 @@ pub fn solution(program: &Program, g: &[f64]) -> Result<Solve, Error> {
         }
     }
     Ok(solve)
+}
+
+/// A step that a model names by parameters \[internal time\]: itself where it is a finite time above 0, else one that [`solution`] refuses, as
+/// infinity and 0 stand for steps that are not named.
+#[must_use]
+pub fn named_step(size: f64) -> f64 {
+    if size == f64::INFINITY || size == 0.0 { f64::NAN } else { size }
+}
+
+/// A number of iterations that follows from parameters; 0, which [`solution`] refuses, where it is no whole number above 0.
+#[must_use]
+pub fn whole(number: f64) -> usize {
+    // Negative and infinite numbers saturate, and then differ from what they were.
+    let count = number as usize;
+    if count as f64 == number { count } else { 0 }
 }
 
 fn require(holds: bool, message: impl Fn() -> String) -> Result<(), Error> {
@@ -209,4 +227,24 @@ fn dimension_of(parameter: &Parameter) -> Dimension {
 fn scale(program: &Program, dimension: Dimension) -> f64 {
     let power = |(base, exponent): (f64, &Rational)| base.powf(exponent.to_f64());
     program.base_scales.into_iter().zip(dimension.exponents()).map(power).product()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_named_step_that_is_none_is_told_from_one_that_is_not_named() {
+        assert_eq!(named_step(0.5), 0.5);
+        assert_eq!(named_step(-1.0), -1.0);
+        assert!(named_step(f64::INFINITY).is_nan() && named_step(0.0).is_nan());
+    }
+
+    #[test]
+    fn parts_of_iterations_count_as_none() {
+        assert_eq!(whole(25.0), 25);
+        for number in [2.5, -1.0, f64::INFINITY, f64::NAN] {
+            assert_eq!(whole(number), 0, "{number}");
+        }
+    }
 }

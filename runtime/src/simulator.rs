@@ -22,10 +22,16 @@ pub fn main(program: &'static Program) -> ExitCode {
     match run(program, &matches) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            complain(&format!("error: {error}"));
             ExitCode::from(if matches!(error, Error::Parameter(_)) { 2 } else { 1 })
         }
     }
+}
+
+/// Writes a line to standard error; where nobody reads that, nothing is lost.
+pub fn complain(text: &str) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stderr(), "{text}");
 }
 
 fn command(program: &'static Program) -> Command {
@@ -130,7 +136,7 @@ fn run(program: &'static Program, matches: &ArgMatches) -> Result<(), Error> {
     told.wall_seconds = started.elapsed().as_secs_f64();
     results.finish(&values, &simulation.system().mesh, &told)?;
     outcome?;
-    eprintln!("outcome: {}; results in {}", told.outcome, folder.display());
+    complain(&format!("outcome: {}; results in {}", told.outcome, folder.display()));
     if matches.get_flag("test") { expectations(program, &simulation) } else { Ok(()) }
 }
 
@@ -172,7 +178,7 @@ fn expectations(program: &Program, simulation: &Simulation) -> Result<(), Error>
                     [value, expected, tolerance].map(|x| with_unit(x, found.unit));
                 format!("  found {value}, expected {expected} within {tolerance}")
             });
-            eprintln!("{verdict}  {}: {}{numbers}  ({})", test.title, found.text, found.place);
+            complain(&format!("{verdict}  {}: {}{numbers}  ({})", test.title, found.text, found.place));
             failed += usize::from(!found.holds);
         }
     }

@@ -26,7 +26,8 @@ impl Checker<'_> {
             Slot::Waiting => {}
         }
         self.lets[at].slot = Slot::Busy;
-        let elaborated = self.let_meaning(at);
+        let Declared { ast, .. } = self.lets[at];
+        let elaborated = self.waited_for(&ast.name, |checker| checker.let_meaning(at));
         if matches!(self.lets[at].slot, Slot::Broken) {
             return Err(Reported);
         }

@@ -37,7 +37,7 @@ mod unknown;
 pub(crate) mod walk;
 mod work;
 
-use crate::diagnostic::{Diagnostic, Sink};
+use crate::diagnostic::{Code, Diagnostic, Sink};
 use crate::model::{
     Block, Coordinates, Event, Expr, Geometry, Let, LetId, LocalId, Model, Pair, PairId, Type,
 };
@@ -170,7 +170,12 @@ pub(crate) struct Checker<'a> {
     pub(crate) blocks: Vec<Block>,
     pub(crate) events: Vec<Event>,
     pub(crate) rest: frame::Rest,
+    /// Definitions under elaboration, each of which waits for the next.
+    waiting: usize,
 }
+
+/// Definitions that may wait for one another, where each uses one that stands behind it.
+const MAX_WAITING: usize = 100;
 
 impl<'a> Checker<'a> {
     fn new(program: &'a Program, sources: &'a SourceMap, sink: &'a mut Sink) -> Self {
@@ -197,6 +202,7 @@ impl<'a> Checker<'a> {
             blocks: Vec::new(),
             events: Vec::new(),
             rest: frame::Rest::default(),
+            waiting: 0,
         }
     }
 
@@ -204,6 +210,28 @@ impl<'a> Checker<'a> {
     pub(crate) fn report(&mut self, diagnostic: Diagnostic) -> Reported {
         self.sink.push(diagnostic);
         Reported
+    }
+
+    /// Elaborates a definition for which others may wait; a chain of too many that do is reported once.
+    pub(crate) fn waited_for<T>(
+        &mut self,
+        name: &ast::Ident,
+        elaborate: impl FnOnce(&mut Self) -> Checked<T>,
+    ) -> Checked<T> {
+        if self.waiting == MAX_WAITING {
+            if !self.sink.iter().any(|diagnostic| diagnostic.code == Code::TooDeep) {
+                let message = format!("more than {MAX_WAITING} definitions wait for that of `{}`", name.text);
+                self.sink.push(
+                    Diagnostic::error(Code::TooDeep, name.span, message)
+                        .help("declare what others use before them"),
+                );
+            }
+            return Err(Reported);
+        }
+        self.waiting += 1;
+        let elaborated = elaborate(self);
+        self.waiting -= 1;
+        elaborated
     }
 
     /// A new local name.

@@ -5,10 +5,11 @@ use super::shape::settle;
 use super::{Checked, Checker, Env, Reported};
 use crate::diagnostic::{Code, Diagnostic, Sink};
 use crate::model::{
-    Action, Expr, ExprKind, Field, FieldId, Model, Moving, Piece, RegionId, StatementKind, Tie, Type,
+    Action, Expr, ExprKind, Field, FieldId, Model, Moving, Piece, RegionId, Shape, StatementKind, Tie, Type,
 };
 use crate::source::{SourceMap, Span};
 use crate::syntax::ast;
+use ansatz_units::Dimension;
 
 impl Checker<'_> {
     /// `moving D by u;`
@@ -115,7 +116,8 @@ fn regions(field: &Field) -> impl Iterator<Item = RegionId> {
     })
 }
 
-/// Reports fields that live on bodies and on moving regions at once, and displacements that live where they make things move.
+/// Reports fields that live on bodies and on moving regions at once, displacements that live where they make things move, and flows that nothing
+/// ties to what moves their region.
 pub(super) fn check(model: &Model, sources: &SourceMap, sink: &mut Sink) {
     for moving in &model.moving {
         let region = sources.slice(moving.span);
@@ -145,12 +147,45 @@ pub(super) fn check(model: &Model, sources: &SourceMap, sink: &mut Sink) {
             );
         }
     }
+    check_ties(model, sources, sink);
     let stays = |piece: &Piece| !matches!(piece, Piece::Region(region) if moves(region));
     for action in model.events.iter().flat_map(|event| &event.actions) {
         let Action::Remesh(domain) = action else { continue };
         if domain.pieces.iter().any(stays) {
             let message = format!("`{}` is no region that moves", sources.slice(domain.span));
             sink.push(Diagnostic::error(Code::Misplaced, domain.span, message).help(what_moves(model)));
+        }
+    }
+}
+
+/// Warns of regions that move with a flow on them of which nothing is tied to what surrounds it: the flow would not feel how its boundary moves.
+fn check_ties(model: &Model, sources: &SourceMap, sink: &mut Sink) {
+    let ties = || {
+        let statements = model.blocks.iter().flat_map(|block| &block.statements);
+        statements.filter_map(|statement| match statement.kind {
+            StatementKind::Tie(tie, _) => Some(tie.field),
+            _ => None,
+        })
+    };
+    for moving in &model.moving {
+        let on_region = |field: &Field| regions(field).any(|region| region == moving.region);
+        let is_velocity = |field: &&Field| {
+            field.shape == Shape::Vector && field.dimension == Dimension::LENGTH / Dimension::TIME
+        };
+        let Some(flow) = model.fields.iter().filter(|field| on_region(field)).find(is_velocity) else {
+            continue;
+        };
+        if !ties().any(|field| on_region(&model.fields[field.0])) {
+            let (region, flow_name) = (sources.slice(moving.span), &flow.name);
+            let by = &model.fields[moving.by.0].name;
+            let message = format!("nothing ties `{flow_name}` to how the boundary of `{region}` moves");
+            sink.push(
+                Diagnostic::warning(Code::Untied, moving.span, message)
+                    .label(flow.span, "declared here")
+                    .help(format!(
+                        "write `tie {flow_name} == dt({by}) on D;`, with the paths D where `{region}` meets bodies"
+                    )),
+            );
         }
     }
 }

@@ -28,6 +28,7 @@ impl Checker<'_> {
                 self.rest.output.frames.push(frames);
             }
             OutputKind::Table { file, every, columns } => {
+                self.file_name(file);
                 if self.rest.output.tables.iter().any(|table| table.file == file.value) {
                     let message = format!("there are two tables `{}`", file.value);
                     self.sink.push(Diagnostic::error(Code::DuplicateName, file.span, message));
@@ -45,6 +46,21 @@ impl Checker<'_> {
             OutputKind::Checkpoint { every } => self.rest.output.checkpoint = Some(self.every(every)?),
         }
         Ok(())
+    }
+
+    /// Reports a name of a table that is no plain one: tables lie in the folder of the results, beside files with names of their own.
+    fn file_name(&mut self, file: &ast::Text) {
+        let plain = |stem: &str| {
+            !stem.is_empty() && !stem.contains(['/', '\\', ':']) && !stem.contains(char::is_control)
+        };
+        if file.value.strip_suffix(".csv").is_some_and(plain) {
+            return;
+        }
+        let message = format!("a table cannot be called `{}`", file.value);
+        self.sink.push(
+            Diagnostic::error(Code::BadSetting, file.span, message)
+                .help("write a file name without folders that ends in `.csv`: `table \"history.csv\" ..`; `--out DIR` says where it goes"),
+        );
     }
 
     fn every(&mut self, every: &ast::Every) -> Checked<Every> {

@@ -12,7 +12,8 @@ impl Checker<'_> {
     pub(super) fn param(&mut self, id: ParamId) -> Checked<&Param> {
         if matches!(self.params[id.0].slot, Slot::Waiting) {
             self.params[id.0].slot = Slot::Busy;
-            let param = self.new_param(id);
+            let Declared { ast, .. } = self.params[id.0];
+            let param = self.waited_for(&ast.name, |checker| checker.new_param(id));
             let broken = matches!(self.params[id.0].slot, Slot::Broken);
             self.params[id.0].slot = param.ok().filter(|_| !broken).map_or(Slot::Broken, Slot::Done);
         }

@@ -79,6 +79,7 @@ codes! {
     VariesInSpace = "S105", "the value varies in space where one number is needed";
     MixedDomain = "S106", "cells, edges and contact pairs make no common domain";
     IncompleteMatch = "S107", "the arms of a `match` leave a gap, repeat or do not ascend";
+    OutOfPlane = "S108", "components out of the plane of the model are always 0";
 
     TooFewEquations = "E201", "fewer equations than unknowns";
     TooManyEquations = "E202", "more equations than unknowns";
@@ -87,6 +88,7 @@ codes! {
     NoConsistentStart = "E205", "no consistent start exists or can be found";
     Unbalanced = "E206", "an unknown has no equation and occurs in no energy";
     NotLinear = "E207", "a residual is linear in its test functions";
+    Untied = "E208", "nothing ties the flow in a moving region to how its boundary moves";
 
     OpenLoop = "G301", "the paths of a region do not close";
     Overlap = "G302", "regions or paths overlap";

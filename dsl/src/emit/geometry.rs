@@ -151,6 +151,8 @@ pub fn solve(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
         Integrator::BackwardEuler => quote!(Integrator::BackwardEuler),
     };
     let iterations = forms.lowering.pool.as_constant(solve.newton_iterations);
+    // What follows from parameters may turn out to be no step.
+    let steps = [solve.max_step, solve.min_step].map(|step| forms.lowering.pool.as_constant(step).is_none());
     let mut roots = vec![
         solve.max_step,
         solve.min_step,
@@ -170,8 +172,10 @@ pub fn solve(forms: &mut Forms<'_>, slots: &Slots) -> TokenStream {
                 let count = Literal::usize_unsuffixed(count as usize);
                 quote!(#count)
             }
-            None => quote!((#newton_iterations) as usize),
+            None => quote!(whole(#newton_iterations)),
         };
+        let step = |follows: bool, value| if follows { quote!(named_step(#value)) } else { quote!(#value) };
+        let (max_step, min_step) = (step(steps[0], max_step), step(steps[1], min_step));
         quote!(Solve {
             time: #time,
             integrator: #integrator,

@@ -54,8 +54,8 @@ const TOLERANCE: Rule =
     Rule { name: "a tolerance", holds: positive, needs: "above 0", help: "write e.g. `tolerance: 1e-8`" };
 const ITERATIONS: Rule = Rule {
     name: "`iterations`",
-    holds: |x| x >= 1.0 && x.is_finite(),
-    needs: "at least 1",
+    holds: |x| x >= 1.0 && x.is_finite() && x.fract() == 0.0,
+    needs: "a whole number of at least 1",
     help: "write e.g. `iterations: 25`",
 };
 

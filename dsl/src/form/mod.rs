@@ -3,6 +3,7 @@
 //!
 //! - `vary`: the rule of variation; every energy, load and weak form becomes a [`Term`].
 //! - `physics`: the statements of the blocks; `pair`: those on contact pairs.
+//! - `plane`: what acts out of the plane is refused.
 //! - `states`: equations of states; `balance`: those that energies give.
 //! - `observe`: which scalars are rows of the system (functionals) and which are only looked at (observables).
 //! - `rates`: which fields have a history.
@@ -17,6 +18,7 @@ mod observe;
 mod output;
 mod pair;
 mod physics;
+mod plane;
 pub mod print;
 mod rates;
 pub mod settings;

@@ -1,7 +1,7 @@
 //! Tables, frames and functions at points.
 
-use super::Builder;
 use super::observe::observed;
+use super::{Builder, plane};
 use crate::derive;
 use crate::lower::{FieldInput, Lowered, Lowering, Region, SymbolKind, unsupported};
 use crate::model::{Every, FieldId, PairId, Shape, Start, Type};
@@ -256,6 +256,7 @@ fn field_start(lowering: &mut Lowering<'_>, field: FieldId) -> Lowered<Vec<Id>> 
         }
         _ => return Err(unsupported(span, "a start value cannot depend on the region or on unknowns")),
     };
+    plane::field(lowering, (field, None), &components, span)?;
     Ok(stored.iter().map(|&axis| components.get(axis).copied().unwrap_or(components[0])).collect())
 }
 

@@ -1,6 +1,7 @@
 //! Statements on contact pairs: energies of the gap, whose law is differentiated twice by it, and loads on the points of the surfaces, whose
 //! force is differentiated by all that it reads.
 
+use super::plane;
 use super::vary::{Variation, global_unknowns, rate_of, with_rate};
 use crate::derive;
 use crate::lower::{Lowered, Lowering, SymbolKind, unsupported};
@@ -83,6 +84,7 @@ pub(super) fn pair_load<'m>(
     let displacement = lowering.displacement_of(contact.pair)?;
     let quantity = lowering.components_on_pair(of, contact.pair)?;
     let force = lowering.components_on_pair(with, contact.pair)?;
+    plane::load(lowering, (of, &quantity), (with, &force))?;
     let variation = Variation::of_load(lowering, &quantity, &force);
     let flux = flux_on(lowering, displacement, &variation, of.span)?;
     lowering.without_fields(&flux, with.span)?;

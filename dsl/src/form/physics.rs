@@ -3,7 +3,7 @@
 use super::balance::{Balances, state_slopes};
 use super::pair::{Contact, GapEnergy, PairLoad, gap_energy, pair_load};
 use super::vary::{Origin, Term, Variation, linearise};
-use super::{Builder, Coupling, Hold, TieOn};
+use super::{Builder, Coupling, Hold, TieOn, plane};
 use crate::derive;
 use crate::lower::{Lowered, Lowering, Region, SymbolKind, Value, internal, is_gradient, unsupported};
 use crate::model::{BlockId, Domain, Expr, FieldId, PairId, Piece, Shape, Sides, Statement, StatementKind};
@@ -82,12 +82,13 @@ impl Physics {
             }
             StatementKind::Load(of, with, Some(domain)) => {
                 self.integral(lowering, (block, "load", span), domain, |lowering| {
-                    let (of, with) = (lowering.components_here(of)?, lowering.components_here(with)?);
-                    let with: Vec<Id> = with
+                    let (quantity, force) = (lowering.components_here(of)?, lowering.components_here(with)?);
+                    plane::load(lowering, (of, &quantity), (with, &force))?;
+                    let force: Vec<Id> = force
                         .into_iter()
                         .map(|with| lowering.measured(with, domain.span))
                         .collect::<Lowered<_>>()?;
-                    Ok(Variation::of_load(lowering, &of, &with))
+                    Ok(Variation::of_load(lowering, &quantity, &force))
                 })
             }
             StatementKind::Load(of, with, None) => self.lumped_load(lowering, block, of, with, span),
@@ -162,8 +163,11 @@ impl Physics {
         with: &'m Expr,
         span: Span,
     ) -> Lowered<()> {
-        let (of, with) = (lowering.global(of)?, lowering.global(with)?);
-        let (of, with) = (of.components(&mut lowering.pool), with.components(&mut lowering.pool));
+        let (quantity, force) = (lowering.global(of)?, lowering.global(with)?);
+        let (quantity, force) =
+            (quantity.components(&mut lowering.pool), force.components(&mut lowering.pool));
+        plane::load(lowering, (of, &quantity), (with, &force))?;
+        let (of, with) = (quantity, force);
         for (quantity, slopes) in quantity_slopes(lowering, &of) {
             let work = lowering.pool.dot(&with, &slopes);
             let coefficient = lowering.pool.neg(work);
@@ -194,6 +198,7 @@ impl Physics {
             _ => model.coordinates.frame.axes().into_iter().enumerate().collect(),
         };
         for (region, values) in parts {
+            plane::field(lowering, (field, component), &values, span)?;
             for &(stored, axis) in &stored {
                 let value = match (component, values.as_slice()) {
                     (Some(wanted), _) if wanted != axis => continue,

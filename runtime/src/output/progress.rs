@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::generated::{Column, Program};
 use crate::observer::{Fired, Observer, Step};
 use crate::settings::{counted, display};
+use crate::simulator::complain;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 
@@ -40,7 +41,7 @@ impl Progress {
     }
 
     fn say(&self, text: &str) {
-        if self.terminal { self.bar.println(text) } else { eprintln!("{text}") }
+        if self.terminal { self.bar.println(text) } else { complain(text) }
     }
 
     fn time(&self, time: f64) -> String {

@@ -33,7 +33,7 @@ pub struct SolveError {
     pub cause: Cause,
     /// Time [internal units].
     pub time: f64,
-    /// Step size when it was given up.
+    /// Step size when it was given up; 0 where there is no time.
     pub step: f64,
     /// Newton iterations of the last attempt.
     pub iterations: usize,
@@ -73,7 +73,8 @@ impl Cause {
                  negative modulus has no solution to be found (docs/language/solve.md)",
             ),
             Self::Singular(_) => Some(
-                "is there a `hold` for every body? What may move without any force, or has no equation at all, makes the tangent singular",
+                "is there a `hold` for every body, a `tie` or a `hold` for every flow? What may move without any force, or has no equation at all, makes the \
+                 tangent singular",
             ),
             Self::Unstable(_) | Self::Unbalanced(_) | Self::States(_) | Self::Mesh(_) => None,
         }
@@ -100,17 +101,26 @@ impl fmt::Display for Cause {
     }
 }
 
+impl SolveError {
+    fn describe_residual(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let iterations = counted(self.iterations, "iteration");
+        writeln!(f, "  {iterations}, relative residual {:.2e}", self.residual)?;
+        writeln!(f, "  largest residual: {}", self.place)?;
+        self.terms.iter().try_for_each(|(term, value)| writeln!(f, "    {term:<40} {value:+.4e}"))
+    }
+}
+
 impl fmt::Display for SolveError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Cause::Mesh(why) = &self.cause {
             return writeln!(f, "{why} (after the step to t = {:.6})", self.time);
         }
-        writeln!(f, "{} at t = {:.6}, step {:.3e}", self.cause, self.time, self.step)?;
-        let iterations = counted(self.iterations, "iteration");
-        writeln!(f, "  {iterations}, relative residual {:.2e}", self.residual)?;
-        writeln!(f, "  largest residual: {}", self.place)?;
-        for (term, value) in &self.terms {
-            writeln!(f, "    {term:<40} {value:+.4e}")?;
+        match self.step {
+            0.0 => writeln!(f, "{}", self.cause)?,
+            step => writeln!(f, "{} at t = {:.6}, step {step:.3e}", self.cause, self.time)?,
+        }
+        if !matches!(self.cause, Cause::Singular(_)) {
+            self.describe_residual(f)?;
         }
         self.cause.advice().map_or(Ok(()), |advice| writeln!(f, "  {advice}"))
     }

@@ -319,8 +319,9 @@ impl System {
         let (field, component, node) = self.unknowns.describe(unknown);
         let x = self.mesh.nodes[node];
         let field = &self.program.fields[field];
-        let suffix = field.component_names.get(component).map_or(String::new(), |n| format!(".{n}"));
-        format!("{}{suffix} at ({:.4}, {:.4})", field.name, x[0], x[1])
+        let named = field.component_names.get(component).filter(|name| !name.is_empty());
+        let suffix = named.map_or(String::new(), |name| format!(".{name}"));
+        format!("{}{suffix} at ({:.4}, {:.4}) {}", field.name, x[0], x[1], self.program.base_units[0])
     }
 
     /// All globals, observables included, at given unknowns and rates.

@@ -105,7 +105,8 @@ pub fn complain(text: &str) {
     let _ = write!(std::io::stderr(), "{text}");
 }
 
-fn say(text: &str) {
+/// Writes a line to standard output.
+pub fn say(text: &str) {
     // A reader that went away, as in `ansatz expand | head`, is no error.
     let _ = writeln!(std::io::stdout(), "{text}");
 }

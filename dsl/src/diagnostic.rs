@@ -20,6 +20,7 @@ pub use code::Code;
 pub use render::{Style, render, render_with};
 
 use crate::source::Span;
+use ansatz_units::Unit;
 
 /// How much a diagnostic matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -112,6 +113,14 @@ impl Diagnostic {
     /// Adds "did you mean" advice where a candidate is close to `name`.
     pub fn help_did_you_mean<'a>(self, name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Self {
         match did_you_mean(name, candidates) {
+            Some(close) => self.help(format!("did you mean `{close}`?")),
+            None => self,
+        }
+    }
+
+    /// Adds "did you mean" advice where a unit is close to `word`.
+    pub fn help_unit(self, word: &str) -> Self {
+        match Unit::meant(word) {
             Some(close) => self.help(format!("did you mean `{close}`?")),
             None => self,
         }

@@ -13,7 +13,7 @@ use crate::diagnostic::{Code, Diagnostic, Sink};
 use crate::form::Forms;
 use crate::form::settings::Bounds;
 use crate::lower::{Lowered, Lowering, SymbolKind};
-use crate::model::Expr;
+use crate::model::{self, Expr};
 use crate::scalar::{Id, Symbol, eval};
 
 pub use test::{LawTests, law_tests};
@@ -65,6 +65,18 @@ fn check_bounds(forms: &Forms<'_>, parameters: &[f64], sink: &mut Sink) {
     let model = forms.lowering.model;
     for ((param, setting), &value) in model.params.iter().zip(&forms.settings.parameters).zip(parameters) {
         let numbers = |ids: &[Id]| values_of(&forms.lowering, ids, parameters, &[]);
+        if let (Bounds::Range(ends), Some(model::Bounds::Range(low, high))) = (&setting.bounds, &param.bounds)
+            && let [start, end] = numbers(ends)[..]
+            && start > end
+        {
+            let message = format!("the range of `{}` is empty: it ends below its start", param.name);
+            sink.push(
+                Diagnostic::error(Code::BadRange, high.span, message)
+                    .label(low.span, "it starts here")
+                    .help("write the smaller bound first: `in 1 .. 2`"),
+            );
+            continue;
+        }
         let inside = match &setting.bounds {
             Bounds::Any => value.is_finite(),
             Bounds::Range(ends) => {

@@ -119,3 +119,44 @@ fn long_chains_of_definitions_are_told_unless_they_stand_in_order() {
 fn a_byte_order_mark_is_no_part_of_the_text() {
     assert_eq!(said(&format!("\u{feff}{BLOCK}")), "");
 }
+
+#[test]
+fn slips_of_the_pen_find_the_word_that_fits_there() {
+    for (written, meant) in [
+        ("output { fields on body evry 0.1 s: u; }", "every"),
+        ("output { table \"b.csv\" evry 0.1 s: t; }", "every"),
+        ("geometry { path spur = from (0, 0) mm lin to (1, 1) mm; }", "line"),
+        ("replace paramm p = 1 MPa;", "param"),
+        ("drop evnt x;", "event"),
+        ("param l = 3 MM;", "mm"),
+    ] {
+        let words = said_of_block(written);
+        assert!(words.contains(&format!("did you mean `{meant}`?")), "{written}: {words}");
+    }
+}
+
+#[test]
+fn a_name_is_no_suggestion_for_its_own_definition() {
+    for written in ["let c = cb;", "param c = cb;"] {
+        let words = said_of_block(written);
+        assert!(words.contains("`cb` is not declared") && !words.contains("did you mean"), "{words}");
+    }
+}
+
+#[test]
+fn an_empty_range_is_told_rather_than_the_default() {
+    insta::assert_snapshot!("empty_range", said_of_block("param zz = 1 in 2 .. 1;"));
+}
+
+#[test]
+fn a_stationary_model_is_told_how_its_one_solution_is_tested() {
+    let still = |value: &str| {
+        said(&format!(
+            "model still; state s: Number ~ 1; physics rest {{ s == 2; }} test \"it stands\" {{ expect {value} > 1; }}"
+        ))
+    };
+    insta::assert_snapshot!("start_without_time", still("s@start"));
+    for value in ["s@(0 s)", "max(s on run)"] {
+        assert_eq!(still(value), "", "{value}");
+    }
+}

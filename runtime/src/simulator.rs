@@ -35,8 +35,14 @@ pub fn complain(text: &str) {
 }
 
 fn command(program: &'static Program) -> Command {
+    let about = match program.doc {
+        "" => format!("The model `{}`, a simulator made by Ansatz", program.name),
+        doc => doc.to_owned(),
+    };
+    // Usage shows the name of the model, whatever the file of the program is called.
     Command::new(program.name)
-        .about(if program.doc.is_empty() { "A simulator made by Ansatz" } else { program.doc })
+        .bin_name(program.name)
+        .about(about)
         .arg(
             Arg::new("set")
                 .long("set")
@@ -54,6 +60,7 @@ fn command(program: &'static Program) -> Command {
             Arg::new("until")
                 .long("until")
                 .value_name("TIME")
+                .allow_hyphen_values(true)
                 .help("Ends the run at this time, such as \"50 s\""),
         )
         .arg(

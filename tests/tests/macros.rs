@@ -1,6 +1,7 @@
 //! `model!` in Rust programs.
 
 use ansatz::observer::Observer;
+use ansatz_tests::notes::Notes;
 
 ansatz::model! {
     /// A cube under its own weight.
@@ -24,6 +25,14 @@ ansatz::model! {
     output { table "sink.csv" every step: sink; }
 }
 
+ansatz::model! {
+    model decay;
+    state s: Number = 1;
+    physics rest { dt(s)*(1 s) == -s; }
+    solve { time = 0 s .. 1 s; }
+    output { table "decay.csv" every 1 s: s; }
+}
+
 struct Quiet;
 impl Observer for Quiet {}
 
@@ -35,4 +44,14 @@ fn a_model_between_braces_is_a_module() {
     let error =
         cube::simulation(&cube::Parameters { a: 20.0, ..Default::default() }).err().expect("out of range");
     assert!(error.to_string().contains("`a` = 20 m is out of its range"), "{error}");
+}
+
+#[test]
+fn a_model_without_a_field_has_states_alone() {
+    let mut simulation = decay::simulation(&decay::Parameters::default()).expect("a simulation");
+    let mut notes = Notes::default();
+    assert_eq!(simulation.run(&mut notes, None).expect("it converges"), "finished");
+    // Fifty steps of a method of second order, each as exact as the tolerance of a step asks for.
+    let end = *notes.column(&decay::PROGRAM, "s").last().expect("a row at the end");
+    assert!((end - (-1.0_f64).exp()).abs() < 1e-4, "{end}");
 }

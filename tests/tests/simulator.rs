@@ -55,6 +55,7 @@ fn wrong_parameters_are_refused_by_name() {
         let words = [&*format!("`{threads}` is no number of threads"), "from 1 to 256", "--threads 2"];
         refused(CRUSHED, &["--threads", threads], &words, 2);
     }
+    refused(CRUSHED, &["--until", "-1 s"], &["cannot end at -1 s", "its time is 0 s .. "], 2);
     refused(CRUSHED, &["--until", "3600 s"], &["cannot end at 3600 s", "its time is 0 s .. "], 2);
 }
 
@@ -181,4 +182,6 @@ fn help_lists_the_parameters() {
         assert!(line.contains(word), "{line}");
     }
     assert!(answer.output.contains("--threads <N>"), "{}", answer.output);
+    let usage = call(DRY, &["--help"], &folder("help")).output;
+    assert!(usage.contains("Usage: dry_contact "), "the name of the model, not of the program: {usage}");
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::{Div, Mul};
 
-use crate::{Dimension, Rational, Scale, Unit, nearest};
+use crate::{Dimension, Rational, Scale, Unit};
 
 /// A product of powers of units: what it measures and its size in SI. Multiplied and divided with `*` and `/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -241,7 +241,7 @@ fn is_word(c: char) -> bool {
 /// An unknown symbol; a Greek mu stands for the `u` of the language.
 fn unknown(symbol: &str) -> UnitErrorKind {
     let ascii = symbol.replace(['\u{b5}', '\u{3bc}'], "u");
-    let nearest = nearest(&ascii, Unit::ALL.iter().map(|unit| unit.symbol));
+    let nearest = Unit::meant(&ascii);
     UnitErrorKind::UnknownUnit { symbol: symbol.to_owned(), nearest }
 }
 

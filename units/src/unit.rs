@@ -22,6 +22,13 @@ impl Unit {
         Unit::ALL.iter().find(|unit| unit.symbol == symbol)
     }
 
+    /// The unit that `word` may have been meant for: the first of the list that differs by case only, as the commoner ones stand before the others,
+    /// else the most similar one.
+    pub fn meant(word: &str) -> Option<&'static str> {
+        let symbols = || Unit::ALL.iter().map(|unit| unit.symbol);
+        symbols().find(|symbol| symbol.eq_ignore_ascii_case(word)).or_else(|| crate::nearest(word, symbols()))
+    }
+
     /// Its size in SI units as a number.
     pub fn factor_to_si(&self) -> f64 {
         self.scale.value()
@@ -113,6 +120,13 @@ mod tests {
         let mut symbols: Vec<_> = Unit::ALL.iter().map(|unit| unit.symbol).collect();
         symbols.sort_unstable();
         assert!(symbols.windows(2).all(|pair| pair[0] != pair[1]));
+    }
+
+    #[test]
+    fn a_slip_of_case_means_the_commoner_unit() {
+        assert_eq!(["MM", "PA", "kpa"].map(Unit::meant), [Some("mm"), Some("Pa"), Some("kPa")]);
+        assert_eq!(Unit::meant("ums"), Some("um"));
+        assert_eq!(Unit::meant("banana"), None);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Expressions: from syntax to typed trees. Calls, matches and domains have files of their own.
 
 use super::shape::{coerce, settle, value};
-use super::{Binding, Checked, Checker, Env, Meaning, Reported};
+use super::{Binding, Checked, Checker, Env, Meaning, Reported, Slot};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::model::{Arithmetic, EventId, Expr, ExprKind, FunctionId, Relation, Shape, Type};
 use crate::resolve::scope::{Symbol, Word};
@@ -157,10 +157,21 @@ impl Checker<'_> {
         }))
     }
 
+    /// Whether a name is under elaboration.
+    fn is_busy(&self, symbol: Symbol) -> bool {
+        match symbol {
+            Symbol::Let(at) => matches!(self.lets[at].slot, Slot::Busy),
+            Symbol::Param(id) => matches!(self.params[id.0].slot, Slot::Busy),
+            _ => false,
+        }
+    }
+
     /// Reports an unknown name, with the closest one in scope.
     pub(super) fn unknown(&mut self, name: &str, span: Span, env: &Env) -> Reported {
         let locals = env.locals.iter().map(|(known, _)| known.as_str());
-        let names = self.scopes[env.module].iter().map(|(known, _)| known);
+        // What is being defined cannot be meant.
+        let names = self.scopes[env.module].iter().filter(|(_, symbol)| !self.is_busy(*symbol));
+        let names = names.map(|(known, _)| known);
         let words = Word::ALL.into_iter().map(|(known, _)| known);
         let candidates: Vec<&str> = locals.chain(names).chain(words).collect();
         let mut diagnostic = Diagnostic::error(Code::UnknownName, span, format!("`{name}` is not declared"))

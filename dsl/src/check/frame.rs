@@ -8,7 +8,7 @@ use crate::model::{
 use crate::resolve::Program;
 use crate::source::Span;
 use crate::syntax::ast::{self, ItemKind};
-use ansatz_units::{Unit, UnitSystem, UnitSystemError};
+use ansatz_units::{UnitSystem, UnitSystemError};
 
 /// What is elaborated in the order of the items.
 #[derive(Debug, Default)]
@@ -43,7 +43,7 @@ fn units_error(error: &UnitSystemError, symbols: &[ast::Ident]) -> Diagnostic {
     match error {
         UnitSystemError::Unknown { index, symbol } => {
             Diagnostic::error(Code::UnknownUnit, place(*index), format!("`{symbol}` is no unit"))
-                .help_did_you_mean(symbol, Unit::ALL.iter().map(|unit| unit.symbol))
+                .help_unit(symbol)
         }
         UnitSystemError::Number { index, .. }
         | UnitSystemError::Redundant { index, .. }
@@ -181,7 +181,8 @@ impl Checker<'_> {
             Some(range) => self.typed(&range.low, &Type::TIME, "the start of the run", &Env::default()),
             None => Err(self.report(
                 Diagnostic::error(Code::NeedsRun, span, "the model has no time range")
-                    .help("give it one: `solve { time = 0 s .. 250 s; }`"),
+                    .help("a stationary model has one solution: write `e@(0 s)` or `max(e on run)`")
+                    .help("a model in time says how long: `solve { time = 0 s .. 250 s; }`"),
             )),
         }
     }

@@ -24,10 +24,7 @@ impl Checker<'_> {
 
     fn unknown_unit(&mut self, symbol: &ast::Ident) -> Reported {
         let message = format!("`{}` is no unit", symbol.text);
-        self.report(
-            Diagnostic::error(Code::UnknownUnit, symbol.span, message)
-                .help_did_you_mean(&symbol.text, Unit::ALL.iter().map(|unit| unit.symbol)),
-        )
+        self.report(Diagnostic::error(Code::UnknownUnit, symbol.span, message).help_unit(&symbol.text))
     }
 
     /// A number literal in coherent units; 0 without unit fits everything.

@@ -342,7 +342,11 @@ impl Failure<'_> {
             (_, text) => format!("`{text}`"),
         };
         let message = format!("expected {}, found {found}", words::list(&self.expected));
-        let diagnostic = Diagnostic::error(Code::Expected, span, message);
+        let mut diagnostic = Diagnostic::error(Code::Expected, span, message);
+        if self.found_kind() == Some(Kind::Word) && !is_reserved(self.found_text()) {
+            let spelt = words::spelt(&self.expected);
+            diagnostic = diagnostic.help_did_you_mean(self.found_text(), spelt.iter().map(String::as_str));
+        }
         match self.number_before() {
             Some(number) if self.expects(&[Rule::uexp]) => {
                 diagnostic.help(format!("a power of a quantity needs parentheses: `({number})^..`"))
@@ -479,7 +483,7 @@ impl Failure<'_> {
         }
         let unknown = |message: String| {
             let diagnostic = Diagnostic::error(Code::UnknownUnit, span, message);
-            Some(diagnostic.help_did_you_mean(word, Unit::ALL.iter().map(|unit| unit.symbol)))
+            Some(diagnostic.help_unit(word))
         };
         if self.expects(&[Rule::usym, Rule::uprod, Rule::ufac]) && !self.expects_more() {
             return unknown(format!("`{word}` is no unit"));

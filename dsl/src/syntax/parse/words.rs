@@ -1,6 +1,7 @@
 //! What each rule is called in a message, and which rules only punctuate.
 
 use super::Rule;
+use crate::syntax::ast::Keyword;
 
 /// Rules that only punctuate: the tree does not keep them.
 pub(super) fn is_mark(rule: Rule) -> bool {
@@ -140,6 +141,18 @@ fn words(rule: Rule) -> String {
         _ => "",
     };
     words.to_owned()
+}
+
+/// The words of the language with which what a rule expects can start: `line` and `arc`, `every`; of a kind, those of all items.
+pub(super) fn spelt(rules: &[Rule]) -> Vec<String> {
+    let leading = |quoted: &str| quoted.split(' ').next().unwrap_or_default().to_owned();
+    let quoted = rules.iter().map(|&rule| words(rule)).collect::<Vec<_>>().join(" ");
+    let mut all: Vec<String> = quoted.split('`').skip(1).step_by(2).map(leading).collect();
+    all.retain(|word| word.chars().all(char::is_alphabetic));
+    if rules.contains(&Rule::kind) {
+        all.extend(Keyword::ALL.map(|keyword| keyword.text().to_owned()));
+    }
+    all
 }
 
 /// "`;`, `on DOMAIN` or an operator" for a set of expected rules; "something else" where nothing can be named.

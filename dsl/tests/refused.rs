@@ -31,6 +31,8 @@ fn loads_and_holds_out_of_the_plane_are_refused() {
         "load u with (0 MPa, -p, p) on edge.top;",
         "load mean(u.z on edge.top) with 1 N;",
         "hold u = (0, 0, 1) mm on edge.top;",
+        "residual -p*test(u).z on edge.top;",
+        "energy p*u.z on edge.top;",
     ] {
         let words = pressing(statement);
         assert!(words.contains("error[S108]") && words.contains("1 error"), "{statement}: {words}");

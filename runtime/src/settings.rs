@@ -70,7 +70,10 @@ pub fn solution(program: &Program, g: &[f64]) -> Result<Solve, Error> {
         return Err(Error::Model(String::from("the time of a run must end after it starts")));
     }
     // What the model does not name is infinite, or zero.
-    let step = |name, size| format!("`{name}: {size}` in `step` is no finite time above 0");
+    let step = |name, size: f64| {
+        let value = if size.is_nan() { String::new() } else { format!(": {size}") };
+        format!("`{name}{value}` in `step` is no finite time above 0")
+    };
     require(solve.max_step > 0.0, || step("max", solve.max_step))?;
     require(solve.min_step >= 0.0, || step("min", solve.min_step))?;
     for tolerance in [solve.step_tolerance, solve.newton_tolerance] {

@@ -67,17 +67,21 @@ impl Physics {
             }
             StatementKind::Energy(density, Some(domain)) => {
                 self.integral(lowering, (block, "energy", span), domain, |lowering| {
-                    let density = lowering.scalar_here(density)?;
-                    let density = lowering.measured(density, domain.span)?;
-                    Ok(Variation::of_density(lowering, density))
+                    let value = lowering.scalar_here(density)?;
+                    let value = lowering.measured(value, domain.span)?;
+                    let variation = Variation::of_density(lowering, value);
+                    plane::integrand(lowering, density, variation.is_zero())?;
+                    Ok(variation)
                 })
             }
             StatementKind::Energy(energy, None) => self.lumped_energy(lowering, block, energy, span),
             StatementKind::Residual(residual, domain) => {
                 self.integral(lowering, (block, "residual", span), domain, |lowering| {
-                    let residual = lowering.scalar_here(residual)?;
-                    let residual = lowering.measured(residual, domain.span)?;
-                    Ok(Variation::of_residual(lowering, residual))
+                    let value = lowering.scalar_here(residual)?;
+                    let value = lowering.measured(value, domain.span)?;
+                    let variation = Variation::of_residual(lowering, value);
+                    plane::integrand(lowering, residual, variation.is_zero())?;
+                    Ok(variation)
                 })
             }
             StatementKind::Load(of, with, Some(domain)) => {

@@ -37,6 +37,14 @@ pub(super) fn load(
     }
 }
 
+/// Refuses an energy or a weak form of which nothing is left, as it is made of a component out of the plane.
+pub(super) fn integrand(lowering: &Lowering<'_>, of: &Expr, is_zero: bool) -> Lowered<()> {
+    match read_across(lowering.model, of).filter(|_| is_zero) {
+        Some(vector) => Err(outside(lowering.model, of.span, &vector)),
+        None => Ok(()),
+    }
+}
+
 /// Refuses values of a vector field out of the plane: the component itself where one is named, else one of `values` that is not zero.
 pub(super) fn field(
     lowering: &Lowering<'_>,
@@ -67,7 +75,7 @@ fn read_across(model: &Model, e: &Expr) -> Option<String> {
     deep(model, e, &mut |e| match &e.kind {
         ExprKind::Component(vector, i) if *i == across => {
             found = Some(match vector.kind {
-                ExprKind::Field(field) => format!("`{}`", model.fields[field.0].name),
+                ExprKind::Field(field) | ExprKind::Test(field) => format!("`{}`", model.fields[field.0].name),
                 _ => String::from("a vector"),
             });
         }

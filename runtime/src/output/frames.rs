@@ -9,6 +9,7 @@ use crate::generated::{Domain, Frames, Program};
 use crate::mesh::Mesh;
 use crate::observer::Frame;
 use crate::system::{domain_nodes, path_edges, region_cells};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{SyncSender, sync_channel};
@@ -133,7 +134,24 @@ fn grid(mesh: &Mesh, domain: Domain) -> Result<Grid, Error> {
             }
         }
     }
+    grid.outline = outline(&grid);
     Ok(grid)
+}
+
+/// Edges `[start, end, middle]` with one cell, or between two regions.
+fn outline(grid: &Grid) -> Vec<[u32; 3]> {
+    let mut edges: BTreeMap<u32, ([u32; 3], Vec<u16>)> = BTreeMap::new();
+    for (cell, &region) in grid.cells.iter().zip(&grid.regions) {
+        for (a, b, middle) in [(0, 1, 3), (1, 2, 4), (2, 0, 5)] {
+            edges
+                .entry(cell[middle])
+                .or_insert(([cell[a], cell[b], cell[middle]], Vec::new()))
+                .1
+                .push(region);
+        }
+    }
+    let border = |regions: &[u16]| regions.len() == 1 || regions[0] != regions[1];
+    edges.into_values().filter(|(_, regions)| border(regions)).map(|(edge, _)| edge).collect()
 }
 
 /// Names of the pictures of each statement's columns; with the statement's number before those that another statement has too.

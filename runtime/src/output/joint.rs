@@ -47,7 +47,9 @@ impl Joint {
             self.finish()?;
             self.time = time;
         }
-        self.layers.push((frame, layer));
+        if self.members.iter().any(|member| member.frame == frame) {
+            self.layers.push((frame, layer));
+        }
         Ok(())
     }
 

@@ -3,9 +3,7 @@
 use super::arrows;
 use super::canvas::{Canvas, Rgb};
 use super::layer::Layer;
-use super::vtu::Grid;
 use crate::error::Error;
-use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Triangles per edge of a cell: curved edges look curved.
@@ -72,7 +70,7 @@ fn draw_layer(canvas: &mut Canvas, view: &View, shown: &Shown<'_>, range: Option
             draw_cell(canvas, cell.map(pixel), cell.map(|n| values[n as usize]), range);
         }
     }
-    for edge in outline(grid) {
+    for edge in &grid.outline {
         draw_edge(canvas, edge.map(pixel));
     }
     for edge in &grid.edges {
@@ -188,22 +186,6 @@ fn draw_cell(canvas: &mut Canvas, corners: [[f64; 2]; 6], values: [f64; 6], rang
             }
         }
     }
-}
-
-/// Edges `[start, end, middle]` with one cell, or between two regions.
-fn outline(grid: &Grid) -> Vec<[u32; 3]> {
-    let mut edges: BTreeMap<u32, ([u32; 3], Vec<u16>)> = BTreeMap::new();
-    for (cell, &region) in grid.cells.iter().zip(&grid.regions) {
-        for (a, b, middle) in [(0, 1, 3), (1, 2, 4), (2, 0, 5)] {
-            edges
-                .entry(cell[middle])
-                .or_insert(([cell[a], cell[b], cell[middle]], Vec::new()))
-                .1
-                .push(region);
-        }
-    }
-    let border = |regions: &[u16]| regions.len() == 1 || regions[0] != regions[1];
-    edges.into_values().filter(|(_, regions)| border(regions)).map(|(edge, _)| edge).collect()
 }
 
 /// Value at the parameter `s` of an edge from its start, end and middle.

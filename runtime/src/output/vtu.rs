@@ -37,6 +37,8 @@ pub struct Grid {
     pub regions: Vec<u16>,
     /// 3 nodes per edge of a path: ends, then middle.
     pub edges: Vec<[u32; 3]>,
+    /// Edges around regions, for pictures: ends, then middle.
+    pub outline: Vec<[u32; 3]>,
 }
 
 /// Writes one frame.

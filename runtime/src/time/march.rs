@@ -180,7 +180,7 @@ fn with_rates(
     iterations: &mut usize,
 ) -> Result<Point, SolveError> {
     let mut size = (TRIAL * settings.max_step).max(settings.min_step);
-    make_consistent(system, time, size, &mut values, iterations)?;
+    make_consistent(system, time, size, &mut values, iterations);
     let start = Point { time, rates: vec![0.0; values.len()], values };
     let euler = tableau(Integrator::BackwardEuler);
     loop {
@@ -200,23 +200,24 @@ fn make_consistent(
     system: &mut dyn ImplicitSystem,
     time: f64,
     size: f64,
-    values: &mut [f64],
+    values: &mut Vec<f64>,
     iterations: &mut usize,
-) -> Result<(), SolveError> {
+) {
     let algebraic = system.algebraic();
     if algebraic.is_empty() {
-        return Ok(());
+        return;
     }
-    let mut solved = values.to_vec();
+    let mut solved = values.clone();
     match system.solve_stage(&Stage { time, alpha: 1.0 / size, base: values }, &mut solved) {
-        Ok(taken) => {
-            *iterations += taken;
-            algebraic.into_iter().for_each(|range| values[range.clone()].copy_from_slice(&solved[range]));
-            system.set_states(time, values, &[])
-        }
+        Ok(taken) => *iterations += taken,
         Err(error) => {
             *iterations += error.iterations;
-            Ok(())
+            return;
         }
+    }
+    let mut consistent = values.clone();
+    algebraic.into_iter().for_each(|range| consistent[range.clone()].copy_from_slice(&solved[range]));
+    if system.set_states(time, &mut consistent, &[]).is_ok() {
+        *values = consistent;
     }
 }

@@ -1,6 +1,7 @@
 //! The wet model through the opening on a coarse mesh, against an independent simulation of the same equations: largest tension 27.2 nN, smallest gap
-//! 0.258 um, centre through at 89.9 s; the membrane caves in before that.
+//! 0.258 um, centre through at 89.9 s; the membrane caves in before that. And the whole baseline, against what the model states of itself.
 
+use ansatz::observer::Observer;
 use ansatz_models::wet_contact;
 use ansatz_tests::notes::Notes;
 use std::sync::OnceLock;
@@ -73,5 +74,23 @@ fn the_nucleus_is_in_balance_with_fibre_film_drag_and_fluid() {
     for k in 1..tau.len() {
         let rest = tau[k] + film[k] + drag[k] + fluid[k];
         assert!(rest.abs() < 1e-4 * tau[k].abs().max(1.0), "{rest} nN in row {k}");
+    }
+}
+
+/// Observer of a run of which only the record counts.
+struct Silent;
+
+impl Observer for Silent {}
+
+// The default mesh, some 25,000 unknowns: three minutes.
+#[test]
+fn the_whole_baseline_is_what_the_model_says_of_itself() {
+    let mut simulation = wet_contact::simulation(&wet_contact::Parameters::default()).expect("a simulation");
+    assert_eq!(simulation.run(&mut Silent, None).expect("it runs to its end"), "completed");
+    let found: Vec<_> =
+        wet_contact::PROGRAM.tests.iter().flat_map(|test| (test.evaluate)(simulation.record())).collect();
+    assert!(found.len() >= 5, "volume, outcome, tension, gap, passage");
+    for expectation in found {
+        assert!(expectation.holds, "{}: {:?}", expectation.text, expectation.numbers);
     }
 }
